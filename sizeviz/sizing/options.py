@@ -1,0 +1,56 @@
+"""What gradient limiting and size preserving are asked to do."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from sizeviz.errors import InputError
+
+Distance = Literal["euclidean", "edges", "edges-as-printed"]
+"""How far apart two nodes are: straight, or along background edges (Algorithms 1, 2), line 18 mended or as printed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LimitOptions:
+    """Gradient limiting.
+
+    Parameters
+    ----------
+    epsilon : float
+        Largest slope of the limited field, size per unit of distance (no unit), above 0. Default 0.5.
+    distance : {'euclidean', 'edges'}
+        Distance that the slope is measured over.
+    """
+
+    epsilon: float = 0.5
+    distance: Distance = "euclidean"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.epsilon) and self.epsilon > 0):
+            raise InputError(f"epsilon is {self.epsilon}; the largest slope must be a number above 0, such as 0.5")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PreserveOptions:
+    """Size preserving, the paper's h*.
+
+    Parameters
+    ----------
+    alpha : float
+        Radius of the ball that must hold no smaller size, in elements, above 0. Default 2.
+    beta : float
+        Scale of the size asked for, above 0; more than 1 permits R > 1 on purpose. Default 1.
+    distance : {'euclidean', 'edges', 'edges-as-printed'}
+        Distance that the ball is measured by; the printed variant shows the paper's erratum.
+    """
+
+    alpha: float = 2.0
+    beta: float = 1.0
+    distance: Distance = "euclidean"
+
+    def __post_init__(self) -> None:
+        for name, value, example in (("alpha", self.alpha, "2"), ("beta", self.beta, "1")):
+            if not (math.isfinite(value) and value > 0):
+                raise InputError(f"{name} is {value}; it must be a number above 0, such as {example}")
