@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -11,8 +11,10 @@ from sizeviz.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+Scalar = TypeVar("Scalar", bound=np.generic)
 
-def read_only(array: NDArray) -> NDArray:
+
+def read_only(array: NDArray[Scalar]) -> NDArray[Scalar]:
     """Return the array, C-contiguous and no longer writable through this reference.
 
     An array that owns its data and is already contiguous is not copied: its builder hands it over.

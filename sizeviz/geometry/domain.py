@@ -88,7 +88,7 @@ class Domain:
     def __post_init__(self) -> None:
         loops = [_clean_loop(self.outer, f"{self.label}: outer loop")]
         loops += [_clean_loop(hole, f"{self.label}: hole {k}") for k, hole in enumerate(self.holes)]
-        marks = list(self.corners) or [None] * len(loops)
+        marks: list[NDArray[np.bool_] | None] = [*self.corners] or [None] * len(loops)
         if len(marks) != len(loops):
             raise InputError(f"{self.label}: corners are given for {len(marks)} loops, but there are {len(loops)}")
         turned, turned_marks = [], []

@@ -1,0 +1,55 @@
+# Each target sets up what it needs first: system packages, .venv, the install. The second time that is instant.
+
+# One thread per library call: sizeviz has its own threads, and pytest its own processes.
+export OPENBLAS_NUM_THREADS ?= 1
+export OMP_NUM_THREADS ?= 1
+export MKL_NUM_THREADS ?= 1
+
+BIN := .venv/bin
+WORKERS ?= 2
+
+.PHONY: help demo test lint format bench screenshots setup clean
+
+help:
+	@echo "make demo         the MRI example by both methods: a table, and demo/compare.png"
+	@echo "make test         the whole test suite"
+	@echo "make lint         ruff, mypy, import-linter, typos"
+	@echo "make bench        every benchmark, one after the other"
+	@echo "make screenshots  the pictures of README and docs, made anew"
+
+demo:
+	@.ci/setup picture
+	@$(BIN)/sizeviz compare mri --out demo
+	@echo "The picture is demo/compare.png"
+
+test:
+	@.ci/setup full
+	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+
+lint:
+	@.ci/setup full
+	@$(BIN)/ruff check --output-format concise .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+	@$(BIN)/lint-imports
+	@$(BIN)/typos
+
+format:
+	@.ci/setup full
+	@$(BIN)/ruff check --fix .
+	@$(BIN)/ruff format .
+
+bench:
+	@.ci/setup full
+	@set -e; for file in benchmarks/[a-z]*.py; do echo "== $$file"; $(BIN)/python $$file; done
+
+screenshots:
+	@.ci/setup full
+	@$(BIN)/python screenshots/make.py
+
+setup:
+	@.ci/setup full
+
+clean:
+	rm -rf .venv build dist demo .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	find sizeviz tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
