@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,8 @@ from sizeviz.geometry.arrays import as_cells, as_points, read_only
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from sizeviz.sizing.tree import TriangleTree
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,19 @@ class BackgroundMesh:
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", as_points(self.points, "background mesh"))
         object.__setattr__(self, "triangles", as_cells(self.triangles, 3, len(self.points), "background mesh"))
+
+    @cached_property
+    def tree(self) -> TriangleTree:
+        """The bounding-box tree over the triangles, built when first asked for."""
+        from sizeviz.sizing.tree import tree_over  # here, so that reading a field does not load numba
+
+        return tree_over(self.points, self.triangles)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Smallest x, smallest y, largest x, largest y of the nodes."""
+        low, high = self.points.min(axis=0), self.points.max(axis=0)
+        return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
     @classmethod
     def regular(cls, grid: Grid) -> BackgroundMesh:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
-from sizeviz.geometry.arrays import as_sizes
+import numpy as np
+
+from sizeviz.geometry.arrays import as_points, as_sizes, read_only
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from sizeviz.sizing.background import BackgroundMesh
 
@@ -43,3 +45,38 @@ class SizeField:
     def with_sizes(self, sizes: NDArray[np.float64], label: str | None = None) -> SizeField:
         """Return a field on the same background with other nodal sizes, ``(V,)``."""
         return replace(self, sizes=sizes, label=self.label if label is None else label)
+
+    @cached_property
+    def sampler(self) -> tuple[NDArray[Any], ...]:
+        """What kernels hand to ``sizing._kernels.size_at``.
+
+        Returns
+        -------
+        tuple
+            ``(grid, sizes, points, triangles, neighbours, boxes, children)``, all read-only. ``grid`` is float64
+            ``[x0, y0, dx, dy, nx, ny]``; on a triangulation nx is 0, and on a grid the last four are empty.
+        """
+        grid, points = self.background.grid, self.background.points
+        if grid is not None:
+            head = read_only(np.array([grid.x0, grid.y0, grid.dx, grid.dy, grid.nx, grid.ny], dtype=np.float64))
+            no_cells = read_only(np.empty((0, 3), dtype=np.int32))
+            no_nodes = read_only(np.empty((0, 2), dtype=np.int32))
+            return head, self.sizes, points, no_cells, no_cells, read_only(np.empty((0, 4))), no_nodes
+        tree = self.background.tree
+        head = read_only(np.zeros(6))
+        return head, self.sizes, points, tree.triangles, tree.neighbours, tree.boxes, tree.children
+
+    def at(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Return the size at each of ``points`` (N, 2); outside the background that of its nearest point.
+
+        Raises
+        ------
+        InputError
+            If the points are not finite (N, 2) coordinates.
+        """
+        from sizeviz.sizing._kernels import sizes_at  # here, so that reading a field does not load numba
+
+        where = as_points(points, self.label)
+        sizes = np.empty(len(where))
+        sizes_at(self.sampler, where, sizes, 0, len(where))
+        return sizes
