@@ -1,0 +1,180 @@
+"""Show a scene in a pyvista plotter, on a screen or off it, touching only what has changed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sizeviz.scene.spec import CellLayer, Color, ImageLayer, Layer, LineLayer, SceneSpec, TriangleLayer
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sizeviz.scene.camera import Camera2D
+
+EDGE_OPACITY = 0.35
+"""Element edges are drawn faintly, so that they never outweigh the colours."""
+
+LIFT = 1e-6
+"""How far each layer lies above the one below, relative to the height of view; seen from above it is invisible."""
+
+
+class Renderer:
+    """Keeps the actors of one plotter in step with the last scene shown.
+
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+        A ``Plotter`` or a ``QtInteractor``; it must be used by one renderer only, on the thread that made it.
+    """
+
+    def __init__(self, plotter: Any) -> None:
+        self._plotter = plotter
+        self._shown: dict[str, tuple[Layer, Any, Any]] = {}
+        self.spec: SceneSpec | None = None
+        plotter.enable_parallel_projection()
+        plotter.remove_all_lights()
+
+    def show(self, spec: SceneSpec) -> None:
+        """Bring the plotter to a scene; the caller decides when to draw."""
+        if spec is self.spec:
+            return
+        if self.spec is None or spec.ground != self.spec.ground:
+            self._plotter.set_background([channel / 255.0 for channel in spec.ground])
+        gone = self._shown.keys() - {layer.name for layer in spec.layers}
+        for name in gone:
+            self._remove(name)
+        for order, layer in enumerate(spec.layers):
+            self._show_layer(layer, order)
+        self.spec = spec
+
+    def look(self, camera: Camera2D) -> None:
+        """Point the plotter's camera; the caller decides when to draw."""
+        vtk_camera = self._plotter.camera
+        vtk_camera.SetFocalPoint(camera.x, camera.y, 0.0)
+        vtk_camera.SetPosition(camera.x, camera.y, camera.height)
+        vtk_camera.SetViewUp(0.0, 1.0, 0.0)
+        vtk_camera.SetParallelScale(0.5 * camera.height)
+        vtk_camera.SetClippingRange(0.5 * camera.height, 1.5 * camera.height)
+        for order, name in enumerate(self._shown):
+            self._shown[name][2].SetPosition(0.0, 0.0, order * LIFT * camera.height)
+
+    def show_edges(self, visible: bool) -> None:
+        """Draw or hide the element edges without composing anew."""
+        for layer, _, actor in self._shown.values():
+            if isinstance(layer, CellLayer):
+                actor.prop.SetEdgeVisibility(visible)
+
+    def _show_layer(self, layer: Layer, order: int) -> None:
+        old = self._shown.get(layer.name)
+        if old is not None and _same_geometry(old[0], layer):
+            self._recolor(old, layer)
+            return
+        self._remove(layer.name)
+        data, texture = _dataset(layer)
+        actor = self._add(layer, data, texture)
+        actor.SetPosition(0.0, 0.0, order * LIFT * 2.0 * self._plotter.camera.GetParallelScale())
+        self._shown[layer.name] = (layer, data, actor)
+
+    def _recolor(self, old: tuple[Layer, Any, Any], layer: Layer) -> None:
+        _, data, actor = old
+        if isinstance(layer, CellLayer) and isinstance(old[0], CellLayer):
+            if layer.colors is not old[0].colors and not np.array_equal(layer.colors, old[0].colors):
+                data.cell_data["rgb"] = layer.colors
+            actor.prop.SetEdgeVisibility(layer.edges is not None)
+            if layer.edges is not None:
+                actor.prop.SetEdgeColor(*_unit(layer.edges))
+        elif isinstance(layer, TriangleLayer):
+            data.point_data["rgb"] = layer.colors
+        elif isinstance(layer, ImageLayer):
+            actor.SetTexture(_texture(layer.colors))
+        elif isinstance(layer, LineLayer):
+            actor.prop.SetColor(*_unit(layer.color))
+            actor.prop.SetLineWidth(layer.width)
+        self._shown[layer.name] = (layer, data, actor)
+
+    def _add(self, layer: Layer, data: Any, texture: Any) -> Any:
+        common: dict[str, Any] = {
+            "name": layer.name,
+            "lighting": False,
+            "reset_camera": False,
+            "render": False,
+            "pickable": False,
+            "show_scalar_bar": False,
+        }
+        if isinstance(layer, ImageLayer):
+            return self._plotter.add_mesh(data, texture=texture, **common)
+        if isinstance(layer, LineLayer):
+            return self._plotter.add_mesh(data, color=_unit(layer.color), line_width=layer.width, **common)
+        actor = self._plotter.add_mesh(data, scalars="rgb", rgb=True, line_width=1.0, **common)
+        if isinstance(layer, CellLayer):
+            actor.prop.SetEdgeVisibility(layer.edges is not None)
+            actor.prop.SetEdgeColor(*_unit(layer.edges or (40, 40, 40)))
+            actor.prop.SetEdgeOpacity(EDGE_OPACITY)
+        return actor
+
+    def _remove(self, name: str) -> None:
+        if name in self._shown:
+            del self._shown[name]
+            self._plotter.remove_actor(name, reset_camera=False, render=False)
+
+
+def _same_geometry(old: Layer, new: Layer) -> bool:
+    if isinstance(old, CellLayer) and isinstance(new, CellLayer):
+        return old.points is new.points and old.quads is new.quads
+    if isinstance(old, TriangleLayer) and isinstance(new, TriangleLayer):
+        return old.points is new.points and old.triangles is new.triangles
+    if isinstance(old, ImageLayer) and isinstance(new, ImageLayer):
+        return old.bounds == new.bounds and old.colors.shape == new.colors.shape
+    if isinstance(old, LineLayer) and isinstance(new, LineLayer):
+        return old.points is new.points and np.array_equal(old.segments, new.segments)
+    return False
+
+
+def _dataset(layer: Layer) -> tuple[Any, Any]:
+    """Return VTK's copy of a layer's geometry, and a texture for pictures. Nothing is shared with workers."""
+    import pyvista
+
+    if isinstance(layer, ImageLayer):
+        return _picture_plane(layer), _texture(layer.colors)
+    if isinstance(layer, LineLayer):
+        used, segments = np.unique(layer.segments, return_inverse=True)
+        lines = np.column_stack([np.full(len(layer.segments), 2), segments.reshape(-1, 2)])
+        return pyvista.PolyData(_raised(layer.points[used]), lines=lines.ravel()), None
+    cells = layer.quads if isinstance(layer, CellLayer) else layer.triangles
+    data = pyvista.PolyData.from_regular_faces(_raised(layer.points), cells)
+    target = data.cell_data if isinstance(layer, CellLayer) else data.point_data
+    target["rgb"] = layer.colors.copy()
+    return data, None
+
+
+def _picture_plane(layer: ImageLayer) -> Any:
+    """Return a rectangle whose texture coordinates put the outermost nodes at the centres of the outermost texels."""
+    import pyvista
+
+    x0, y0, x1, y1 = layer.bounds
+    ny, nx = layer.colors.shape[:2]
+    u, v = 0.5 / nx, 0.5 / ny
+    plane = pyvista.PolyData(
+        np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]]), faces=[4, 0, 1, 2, 3]
+    )
+    plane.active_texture_coordinates = np.array([[u, v], [1 - u, v], [1 - u, 1 - v], [u, 1 - v]])
+    return plane
+
+
+def _texture(colors: NDArray[np.uint8]) -> Any:
+    import pyvista
+
+    texture = pyvista.Texture(np.ascontiguousarray(colors[::-1]))
+    texture.SetInterpolate(True)
+    texture.SetRepeat(False)
+    return texture
+
+
+def _raised(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.column_stack([points, np.zeros(len(points))])
+
+
+def _unit(color: Color) -> tuple[float, float, float]:
+    return color[0] / 255.0, color[1] / 255.0, color[2] / 255.0

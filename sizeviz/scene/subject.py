@@ -1,0 +1,133 @@
+"""What a pane can show of one method: its mesh, its judgement and its fields, whichever of them exist."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sizeviz.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sizeviz.conformity import Measure, MeshReport
+    from sizeviz.geometry import Domain, QuadMesh
+    from sizeviz.scene.view import Quantity
+    from sizeviz.sizing import SizeField
+    from sizeviz.sources import Image
+    from sizeviz.study import Study
+
+METHOD_TITLES: dict[str, str] = {
+    "none": "Field as given",
+    "gradient-limiting": "Gradient limiting",
+    "size-preserving": "Size preserving",
+    "guaranteed": "Guaranteed",
+}
+"""The methods in the order of the paper, in words."""
+
+MEASURE_TITLES: dict[str, str] = {
+    "mean-edge": "mean edge",
+    "sqrt-area": "√area",
+    "max-edge": "longest edge",
+}
+"""The measures of an element's size, in words."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """One method's results, as far as they exist.
+
+    Parameters
+    ----------
+    title, detail : str
+        Words over the pane.
+    mesh : QuadMesh, optional
+        The elements.
+    report : MeshReport, optional
+        Their judgement against the user's field.
+    prescribed, target : SizeField, optional
+        The user's field, and what the method made of it.
+    domain : Domain, optional
+        Its outline is drawn.
+    image : Image, optional
+        What the interpolation error is measured on.
+    """
+
+    title: str = ""
+    detail: str = ""
+    mesh: QuadMesh | None = None
+    report: MeshReport | None = None
+    prescribed: SizeField | None = None
+    target: SizeField | None = None
+    domain: Domain | None = None
+    image: Image | None = None
+
+    def field(self, quantity: Quantity) -> SizeField | None:
+        """Return the field behind a field quantity, None where it does not exist yet."""
+        return self.prescribed if quantity == "prescribed" else self.target
+
+    def element_values(self, quantity: Quantity, measure: Measure) -> NDArray[np.float64] | None:
+        """Return one value an element, ``(Q,)``, or None where the mesh or its report does not exist yet."""
+        if self.mesh is None:
+            return None
+        if quantity == "error":
+            return None
+        if self.report is not None:
+            return {"quality": self.report.quality, "size": self.report.sizes[measure]}.get(
+                quantity, self.report.ratios[measure]
+            )
+        return None if quantity == "ratio" else _measured(self.mesh, quantity, measure)
+
+
+def subject_of(study: Study, method: str) -> Subject:
+    """Return what a study has of one method; the prescribed field is there even before anything was run."""
+    run = study.runs.get(method)
+    return Subject(
+        title=METHOD_TITLES.get(method, method),
+        detail=_detail(study, method),
+        mesh=None if run is None else run.mesh,
+        report=None if run is None else run.report,
+        prescribed=study.source.field,
+        target=None if run is None else run.target,
+        domain=study.source.domain,
+        image=study.source.image,
+    )
+
+
+def subjects_of(study: Study | Sequence[Subject], methods: Sequence[str] | None = None) -> tuple[list[Subject], str]:
+    """Return the methods to compare, in the order of the paper unless told otherwise, and a heading.
+
+    Raises
+    ------
+    InputError
+        If a method asked for was not run.
+    """
+    if isinstance(study, Sequence):
+        return list(study), " beside ".join(subject.title for subject in study)
+    names = list(methods) if methods is not None else [name for name in METHOD_TITLES if name in study.runs]
+    missing = [name for name in names if name not in study.runs]
+    if missing:
+        raise InputError(f"no run of {', '.join(missing)} in this study; it has {', '.join(study.runs) or 'none'}")
+    return [subject_of(study, name) for name in names], study.source.label
+
+
+def _detail(study: Study, method: str) -> str:
+    options = study.options
+    words = {
+        "gradient-limiting": f"ε = {options.limit.epsilon:g}",
+        "size-preserving": f"α = {options.preserve.alpha:g}, β = {options.preserve.beta:g}",
+        "guaranteed": f"α = {options.preserve.alpha:g}, β = {options.preserve.beta:g}",
+    }.get(method, "")
+    run = study.runs.get(method)
+    if run is None or run.mesh is None:
+        return words
+    return " · ".join(part for part in (words, f"{run.mesh.n_quads:,} elements") if part)
+
+
+def _measured(mesh: QuadMesh, quantity: Quantity, measure: Measure) -> NDArray[np.float64]:
+    """Return the size or quality of a mesh that nobody has judged."""
+    from sizeviz.conformity import element_sizes, shape_quality  # compiles kernels: only where it is needed
+
+    return shape_quality(mesh) if quantity == "quality" else element_sizes(mesh, measure)
