@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from sizeviz.sizing._tree_kernels import box_distance2
+from sizeviz.sizing._tree_kernels import FANOUT, box_distance2
 
 LONGEST_WALK = 32
 """Triangles crossed before the walk gives up and the tree is asked."""
@@ -28,7 +28,13 @@ def size_at(sampler, x, y, hint):
     grid = sampler[0]
     if grid[4] > 0.0:
         return _size_on_grid(grid, sampler[1], x, y), hint
-    return _size_on_triangles(sampler[1], sampler[2], sampler[3], sampler[4], sampler[5], sampler[6], x, y, hint)
+    cells = sampler[2]
+    current = hint if 0 <= hint < len(cells) else 0
+    wa, wb, wc = _weights(cells, current, x, y)
+    # most queries stay in the triangle of the last one: this much is worth inlining into the caller
+    if wa >= 0.0 and wb >= 0.0 and wc >= 0.0:
+        return (wa * cells[current, 6] + wb * cells[current, 7] + wc * cells[current, 8]) / (wa + wb + wc), current
+    return _size_by_walking(cells, sampler[3], sampler[4], x, y, current)
 
 
 @njit(nogil=True, cache=True)
@@ -57,51 +63,47 @@ def _size_on_grid(grid, sizes, x, y):
 
 
 @njit(nogil=True, cache=True)
-def _size_on_triangles(sizes, points, triangles, neighbours, boxes, children, x, y, hint):
-    current = hint if 0 <= hint < len(triangles) else 0
-    came_from = -1
-    for _ in range(LONGEST_WALK):
-        a, b, c = triangles[current, 0], triangles[current, 1], triangles[current, 2]
-        ax, ay = points[a, 0] - x, points[a, 1] - y
-        bx, by = points[b, 0] - x, points[b, 1] - y
-        cx, cy = points[c, 0] - x, points[c, 1] - y
-        wa, wb, wc = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
-        area = wa + wb + wc
-        slack = -ROUNDING * area
-        if wa >= slack and wb >= slack and wc >= slack:
-            return _blend(sizes[a], sizes[b], sizes[c], wa, wb, wc), current
-        onward = _way_out(neighbours, current, came_from, wa, wb, wc, slack)
-        if onward < 0:
-            break
-        came_from = current
-        current = onward
-    nearest = _nearest_triangle(points, triangles, boxes, children, x, y)
-    return _size_on_one(sizes, points, triangles, nearest, x, y), nearest
+def _weights(cells, t, x, y):
+    """Return a point's unscaled barycentric weights in triangle ``t``: negative outside the opposite edge."""
+    ax, ay = cells[t, 0] - x, cells[t, 1] - y
+    bx, by = cells[t, 2] - x, cells[t, 3] - y
+    cx, cy = cells[t, 4] - x, cells[t, 5] - y
+    return bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
 
 
 @njit(nogil=True, cache=True)
-def _blend(ha, hb, hc, wa, wb, wc):
+def _blend(cells, t, wa, wb, wc):
     """Interpolate with weights cut off at zero, so that rounding never leaves the range of the three sizes."""
     wa, wb, wc = max(wa, 0.0), max(wb, 0.0), max(wc, 0.0)
-    return (wa * ha + wb * hb + wc * hc) / (wa + wb + wc)
+    return (wa * cells[t, 6] + wb * cells[t, 7] + wc * cells[t, 8]) / (wa + wb + wc)
 
 
 @njit(nogil=True, cache=True)
-def _way_out(neighbours, current, came_from, wa, wb, wc, slack):
-    """Return the neighbour across the edge that the point lies furthest behind, -1 at the background's edge."""
-    best, onward = slack, -1
-    for k in range(3):
-        weight = wa if k == 0 else (wb if k == 1 else wc)
-        if weight < best and neighbours[current, k] != came_from:
-            best = weight
-            onward = neighbours[current, k]
-    return onward
+def _size_by_walking(cells, boxes, children, x, y, current):
+    """Walk towards the point from triangle to triangle; ask the tree where the walk meets an edge or takes long."""
+    for _ in range(LONGEST_WALK):
+        wa, wb, wc = _weights(cells, current, x, y)
+        slack = -ROUNDING * (wa + wb + wc)
+        if wa >= slack and wb >= slack and wc >= slack:
+            return _blend(cells, current, wa, wb, wc), current
+        onward = cells[current, 9]
+        if wb < wa and wb <= wc:
+            onward = cells[current, 10]
+        elif wc < wa:
+            onward = cells[current, 11]
+        if onward < 0.0:
+            break
+        current = int(onward)
+    nearest = _nearest_triangle(cells, boxes, children, x, y)
+    px, py = _nearest_point(cells, nearest, x, y)
+    wa, wb, wc = _weights(cells, nearest, px, py)
+    return _blend(cells, nearest, wa, wb, wc), nearest
 
 
 @njit(nogil=True, cache=True)
-def _nearest_triangle(points, triangles, boxes, children, x, y):
+def _nearest_triangle(cells, boxes, children, x, y):
     """Return the triangle that holds a point or lies nearest to it, by branch and bound."""
-    n_leaves = (len(triangles) + 3) // 4
+    n_leaves = (len(cells) + FANOUT - 1) // FANOUT
     stack = np.empty(128, dtype=np.int64)
     stack[0] = len(children) - 1
     top = 1
@@ -113,7 +115,7 @@ def _nearest_triangle(points, triangles, boxes, children, x, y):
             continue
         if node < n_leaves:
             for t in range(children[node, 0], children[node, 1]):
-                px, py = _nearest_point(points, triangles, t, x, y)
+                px, py = _nearest_point(cells, t, x, y)
                 d2 = (px - x) ** 2 + (py - y) ** 2
                 if d2 < best:
                     best, nearest = d2, t
@@ -138,36 +140,19 @@ def push_nearer_last(boxes, children, node, x, y, stack, top):
 
 
 @njit(nogil=True, cache=True)
-def _weights_in(points, triangles, t, x, y):
-    a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-    ax, ay = points[a, 0] - x, points[a, 1] - y
-    bx, by = points[b, 0] - x, points[b, 1] - y
-    cx, cy = points[c, 0] - x, points[c, 1] - y
-    return bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
-
-
-@njit(nogil=True, cache=True)
-def _nearest_point(points, triangles, t, x, y):
+def _nearest_point(cells, t, x, y):
     """Return the point of a triangle nearest to (x, y)."""
-    wa, wb, wc = _weights_in(points, triangles, t, x, y)
+    wa, wb, wc = _weights(cells, t, x, y)
     if wa >= 0.0 and wb >= 0.0 and wc >= 0.0:
         return x, y
     best, bx, by = np.inf, x, y
     for k in range(3):
-        a, b = triangles[t, k], triangles[t, (k + 1) % 3]
-        ex, ey = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
-        s = ((x - points[a, 0]) * ex + (y - points[a, 1]) * ey) / (ex * ex + ey * ey)
+        a, b = 2 * k, 2 * ((k + 1) % 3)
+        ex, ey = cells[t, b] - cells[t, a], cells[t, b + 1] - cells[t, a + 1]
+        s = ((x - cells[t, a]) * ex + (y - cells[t, a + 1]) * ey) / (ex * ex + ey * ey)
         s = min(max(s, 0.0), 1.0)
-        px, py = points[a, 0] + s * ex, points[a, 1] + s * ey
+        px, py = cells[t, a] + s * ex, cells[t, a + 1] + s * ey
         d2 = (px - x) ** 2 + (py - y) ** 2
         if d2 < best:
             best, bx, by = d2, px, py
     return bx, by
-
-
-@njit(nogil=True, cache=True)
-def _size_on_one(sizes, points, triangles, t, x, y):
-    """Return the size at the point of triangle ``t`` nearest to (x, y)."""
-    px, py = _nearest_point(points, triangles, t, x, y)
-    wa, wb, wc = _weights_in(points, triangles, t, px, py)
-    return _blend(sizes[triangles[t, 0]], sizes[triangles[t, 1]], sizes[triangles[t, 2]], wa, wb, wc)

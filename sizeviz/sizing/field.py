@@ -53,18 +53,17 @@ class SizeField:
         Returns
         -------
         tuple
-            ``(grid, sizes, points, triangles, neighbours, boxes, children)``, all read-only. ``grid`` is float64
-            ``[x0, y0, dx, dy, nx, ny]``; on a triangulation nx is 0, and on a grid the last four are empty.
+            ``(grid, sizes, cells, boxes, children)``, all read-only. ``grid`` is float64
+            ``[x0, y0, dx, dy, nx, ny]``; on a triangulation nx is 0, and on a grid the last three are empty.
         """
-        grid, points = self.background.grid, self.background.points
+        grid = self.background.grid
         if grid is not None:
             head = read_only(np.array([grid.x0, grid.y0, grid.dx, grid.dy, grid.nx, grid.ny], dtype=np.float64))
-            no_cells = read_only(np.empty((0, 3), dtype=np.int32))
-            no_nodes = read_only(np.empty((0, 2), dtype=np.int32))
-            return head, self.sizes, points, no_cells, no_cells, read_only(np.empty((0, 4))), no_nodes
+            no_children = read_only(np.empty((0, 2), dtype=np.int32))
+            return head, self.sizes, read_only(np.empty((0, 12))), read_only(np.empty((0, 4))), no_children
         tree = self.background.tree
-        head = read_only(np.zeros(6))
-        return head, self.sizes, points, tree.triangles, tree.neighbours, tree.boxes, tree.children
+        cells = tree.cells(self.background.points, self.sizes)
+        return read_only(np.zeros(6)), self.sizes, cells, tree.boxes, tree.children
 
     def at(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the size at each of ``points`` (N, 2); outside the background that of its nearest point.

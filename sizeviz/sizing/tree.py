@@ -43,6 +43,17 @@ class TriangleTree:
         """Number of leaves; node numbers below it are leaves."""
         return -(-len(self.triangles) // FANOUT)
 
+    def cells(self, points: NDArray[np.float64], sizes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return all that interpolation needs, triangle by triangle, so that a query touches one row.
+
+        Returns
+        -------
+        (T, 12) float64
+            x and y of the three corners, their sizes, and the numbers of the neighbours across the opposite edges.
+        """
+        corners = points[self.triangles].reshape(-1, 6)
+        return read_only(np.column_stack([corners, sizes[self.triangles], self.neighbours]))
+
     def lowest(self, sizes: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the smallest nodal size under every tree node, ``(M,)``."""
         return read_only(bound_sizes(sizes, self.triangles, self.children, self.n_leaves))
