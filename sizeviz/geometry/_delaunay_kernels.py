@@ -241,20 +241,30 @@ def insert(start, stop, x, y, corner, twin, state, same_as, stack, removed, rim)
 
 
 @njit(nogil=True, cache=True)
-def collected(ghost, n_triangles, corner, twin, index):
-    """Return the finite triangles by the points' own numbers, and their neighbours, -1 across the hull."""
-    place = np.empty(n_triangles, dtype=np.int32)
-    count = 0
+def real(n_triangles, ghost, corner):
+    """Return which triangles have no ghost corner."""
+    keep = np.empty(n_triangles, dtype=np.bool_)
     for t in range(n_triangles):
-        real = corner[3 * t] != ghost and corner[3 * t + 1] != ghost and corner[3 * t + 2] != ghost
-        place[t] = count if real else -1
-        count += real
+        keep[t] = corner[3 * t] != ghost and corner[3 * t + 1] != ghost and corner[3 * t + 2] != ghost
+    return keep
+
+
+@njit(nogil=True, cache=True)
+def collected(keep, corner, twin, locked, index):
+    """Return the kept triangles by the points' own numbers, their neighbours (-1: none), their locked edges."""
+    place = np.empty(len(keep), dtype=np.int32)
+    count = 0
+    for t in range(len(keep)):
+        place[t] = count if keep[t] else -1
+        count += keep[t]
     triangles = np.empty((count, 3), dtype=np.int32)
     neighbours = np.empty((count, 3), dtype=np.int32)
-    for t in range(n_triangles):
+    lock = np.empty((count, 3), dtype=np.bool_)
+    for t in range(len(keep)):
         k = place[t]
         if k >= 0:
             for i in range(3):
                 triangles[k, i] = index[corner[3 * t + i]]
                 neighbours[k, i] = place[twin[3 * t + i] // 3]
-    return triangles, neighbours
+                lock[k, i] = locked[3 * t + i] != 0
+    return triangles, neighbours, lock

@@ -118,7 +118,7 @@ def test_cancel_stops_it():
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        triangulated(np.random.default_rng(7).random((100, 2)), Stop())
+        triangulated(np.random.default_rng(7).random((100, 2)), monitor=Stop())
 
 
 def test_hilbert_order_keeps_neighbours_close():
