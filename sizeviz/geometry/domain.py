@@ -175,5 +175,5 @@ def _clean_loop(value: ArrayLike, name: str) -> NDArray[np.float64]:
     if len(np.unique(loop, axis=0)) < 3:
         raise InputError(f"{name}: a loop needs at least three distinct vertices, got {len(loop)}")
     if signed_area(loop) == 0.0:
-        raise InputError(f"{name}: the loop encloses no area; check the order of its vertices")
+        raise InputError(f"{name}: the loop encloses no area, or crosses itself; list its vertices in order")
     return loop
