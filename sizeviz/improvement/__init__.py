@@ -1,1 +1,7 @@
-"""improvement."""
+"""Clean-up and smoothing of raw quad meshes, and the guarantee R <= 1."""
+
+from sizeviz.improvement.chain import improved
+from sizeviz.improvement.options import Objective, SmoothOptions
+from sizeviz.improvement.smoothing import smoothed
+
+__all__ = ["Objective", "SmoothOptions", "improved", "smoothed"]

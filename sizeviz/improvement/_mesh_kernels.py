@@ -1,0 +1,114 @@
+"""Adjacency, order along a Hilbert curve, and blocks of nodes that may move at the same time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sizeviz.improvement._jit import compiled
+
+HILBERT_LEVELS = 16
+
+
+@compiled
+def hilbert_key(i, j, levels):
+    """Return the position of cell (i, j) of a 2^levels grid along the Hilbert curve."""
+    key = 0
+    for level in range(levels - 1, -1, -1):
+        bit = 1 << level
+        right, up = (i & bit) != 0, (j & bit) != 0
+        key = 4 * key + (3 if right and not up else 2 if right else 1 if up else 0)
+        if not up:
+            if right:
+                i, j = ~i, ~j
+            i, j = j, i
+    return key
+
+
+@compiled
+def hilbert_keys(xy):
+    """Return the Hilbert position of each point within the bounding box of all, ``(N,) int64``."""
+    n = len(xy)
+    keys = np.empty(n, np.int64)
+    if n == 0:
+        return keys
+    x0, x1, y0, y1 = xy[0, 0], xy[0, 0], xy[0, 1], xy[0, 1]
+    for v in range(n):
+        x0, x1 = min(x0, xy[v, 0]), max(x1, xy[v, 0])
+        y0, y1 = min(y0, xy[v, 1]), max(y1, xy[v, 1])
+    extent = max(x1 - x0, y1 - y0)
+    cells = (1 << HILBERT_LEVELS) - 1
+    scale = cells / extent if extent > 0.0 else 0.0
+    for v in range(n):
+        keys[v] = hilbert_key(int((xy[v, 0] - x0) * scale), int((xy[v, 1] - y0) * scale), HILBERT_LEVELS)
+    return keys
+
+
+@compiled
+def corner_counts(quads, count):
+    """Count the elements at each node."""
+    count[:] = 0
+    for q in range(len(quads)):
+        if quads[q, 0] >= 0:
+            for k in range(4):
+                count[quads[q, k]] += 1
+
+
+@compiled
+def fill_rings(quads, ring, count):
+    """Write the corners 4 q + k around each node, in the order of the elements."""
+    count[:] = 0
+    for q in range(len(quads)):
+        if quads[q, 0] >= 0:
+            for k in range(4):
+                v = quads[q, k]
+                ring[v, count[v]] = 4 * q + k
+                count[v] += 1
+
+
+@compiled
+def find_next(v, w, quads, ring, count):
+    """Return the corner around v whose next node is w, or -1: the element on the left of the edge v -> w."""
+    for j in range(count[v]):
+        code = ring[v, j]
+        if quads[code >> 2, ((code & 3) + 1) & 3] == w:
+            return code
+    return -1
+
+
+@compiled
+def mark_boundary(quads, ring, count, boundary):
+    """Mark the nodes of edges that only one element has."""
+    boundary[:] = False
+    for q in range(len(quads)):
+        if quads[q, 0] < 0:
+            continue
+        for k in range(4):
+            v, w = quads[q, k], quads[q, (k + 1) & 3]
+            if find_next(w, v, quads, ring, count) < 0:
+                boundary[v] = True
+                boundary[w] = True
+
+
+@compiled
+def colour_blocks(size, quads, ring, count, colour):
+    """Give each block of ``size`` consecutive nodes a colour that no block sharing an element with it has.
+
+    Returns the number of colours. Blocks of one colour read and write disjoint nodes.
+    """
+    colour[:] = -1
+    taken = np.full(len(colour) + 1, -1, np.int64)
+    most = 0
+    for b in range(len(colour)):
+        for v in range(b * size, min((b + 1) * size, len(count))):
+            for j in range(count[v]):
+                q = ring[v, j] >> 2
+                for k in range(4):
+                    other = quads[q, k] // size
+                    if other != b and colour[other] >= 0:
+                        taken[colour[other]] = b
+        c = 0
+        while taken[c] == b:
+            c += 1
+        colour[b] = c
+        most = max(most, c + 1)
+    return most

@@ -1,0 +1,64 @@
+"""Sweeps over blocks of nodes, and the targets they aim at."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._star_kernels import STAR_COLUMNS, node_step
+from sizeviz.sizing._kernels import size_at
+
+
+@compiled
+def sweep_blocks(first, last, blocks, size, patch, inv, bound, law, rails, gain):
+    """Move every node of blocks[first:last] once, in order; ``gain[b]`` receives the objective's decrease."""
+    star = np.empty((patch[2].shape[1], STAR_COLUMNS))
+    for i in range(first, last):
+        b = blocks[i]
+        total = 0.0
+        for v in range(b * size, min((b + 1) * size, len(patch[3]))):
+            total += node_step(v, patch, inv, bound, law, rails, star)
+        gain[b] = total
+
+
+@compiled
+def centre_sizes(first, last, xy, quads, sampler, hint, sizes):
+    """Write the field's size at the centre of each element of a range; dead elements keep theirs."""
+    guess = hint[first]
+    for q in range(first, last):
+        if quads[q, 0] < 0:
+            continue
+        x = y = 0.0
+        for k in range(4):
+            x += 0.25 * xy[quads[q, k], 0]
+            y += 0.25 * xy[quads[q, k], 1]
+        if hint[q] >= 0:
+            guess = hint[q]
+        sizes[q], guess = size_at(sampler, x, y, guess)
+        hint[q] = guess
+
+
+@compiled
+def element_area(q, xy, quads):
+    """Return the signed area of an element."""
+    a, b, c, d = quads[q, 0], quads[q, 1], quads[q, 2], quads[q, 3]
+    return 0.5 * ((xy[c, 0] - xy[a, 0]) * (xy[d, 1] - xy[b, 1]) - (xy[c, 1] - xy[a, 1]) * (xy[d, 0] - xy[b, 0]))
+
+
+@compiled
+def scale_targets(xy, quads, sizes, inv):
+    """Write 1 / (c size)^2 of each element and return the target scale c = sqrt(sum A_e / size_e^2 / elements)."""
+    total, alive = 0.0, 0
+    for q in range(len(quads)):
+        if quads[q, 0] >= 0:
+            total += element_area(q, xy, quads) / (sizes[q] * sizes[q])
+            alive += 1
+    c2 = total / max(alive, 1)
+    if not c2 > 0.0:
+        c2 = 1.0
+    for q in range(len(quads)):
+        if quads[q, 0] >= 0:
+            inv[q] = 1.0 / (c2 * sizes[q] * sizes[q])
+    return math.sqrt(c2)
