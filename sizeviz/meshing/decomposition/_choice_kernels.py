@@ -7,6 +7,7 @@ from numba import njit
 
 from sizeviz.meshing.decomposition._chord_kernels import chord_count, with_parity
 from sizeviz.meshing.decomposition._loop_kernels import TWO_PI, angle_between, clears, worst_corner
+from sizeviz.meshing.decomposition._template_kernels import best_case
 
 ANGLE_WEIGHT, LENGTH_WEIGHT, FIT_WEIGHT = 0.5, 0.3, 0.2
 """Weights of the four angles, of the chord's length, and of how well whole elements fit it."""
@@ -14,8 +15,8 @@ ANGLE_WEIGHT, LENGTH_WEIGHT, FIT_WEIGHT = 0.5, 0.3, 0.2
 BALANCE_WEIGHT = 0.05
 """Breaks ties: of chords equally good the one that halves the loop is taken, so that the recursion stays shallow."""
 
-POOR_QUAD = 0.5
-"""A quadrilateral cut off whose worst corner is below this costs extra."""
+POOR = 0.5
+"""A chord that leaves elements whose worst corner is below this costs extra."""
 
 SMALLEST_ANGLE = 0.15
 """Angles, in radians, below which a chord is not considered while there is any other."""
@@ -38,10 +39,31 @@ def angle_cost(i, j, chord, direction, angle, least):
 
 
 @njit(nogil=True, cache=True)
-def _quad_cost(n, xy, i, j):
-    """Return what it costs that the chord from i to j = i + 3 leaves a poor quadrilateral."""
-    worst = worst_corner(xy[i], xy[(i + 1) % n], xy[(i + 2) % n], xy[j])
-    return 0.0 if worst >= POOR_QUAD else POOR_QUAD - worst
+def _poor(worst):
+    """Return what an element costs whose worst corner is not good: more than any angle where it is inverted."""
+    return 0.0 if worst >= POOR else POOR - worst
+
+
+@njit(nogil=True, cache=True)
+def _part_cost(n, xy, i, across, edges):
+    """Return what it costs that the part from place i across to the chord's end makes poor elements.
+
+    Only parts of four and six nodes are looked at: nothing will be split there again.
+    """
+    total = across + edges
+    if total == 4:
+        return _poor(worst_corner(xy[i], xy[(i + 1) % n], xy[(i + 2) % n], xy[(i + 3) % n]))
+    if total != 6:
+        return 0.0
+    spot = np.empty((8, 2))
+    for k in range(across + 1):
+        at = (i + k) % n
+        spot[k, 0], spot[k, 1] = xy[at, 0], xy[at, 1]
+    for k in range(1, edges):
+        for d in range(2):
+            spot[across + k, d] = spot[across, d] + (spot[0, d] - spot[across, d]) * k / edges
+    _, worst = best_case(spot, 3.0)
+    return _poor(worst)
 
 
 @njit(nogil=True, cache=True)
@@ -56,18 +78,15 @@ def _try(i, j, across, loop, n, xy, direction, angle, spacing, diameter, sampler
     cost += ANGLE_WEIGHT * angle_cost(i, j, math.atan2(dy, dx), direction, angle, least)
     if cost >= best:
         return best
-    if across == 3:
-        cost += _quad_cost(n, xy, i, j)
-    if n - across == 3:
-        cost += _quad_cost(n, xy, j, i)
-    if cost >= best:
-        return best
     count, hint = chord_count(sampler, scale, xy[i, 0], xy[i, 1], xy[j, 0], xy[j, 1], found[4])
     found[4] = hint
     edges = with_parity(count, across % 2)
     if edges + min(across, n - across) < 4 or (edges == 2 and min(across, n - across) == 2):
         return best
     cost += FIT_WEIGHT * min(abs(1.0 - count / edges), 1.0)
+    if cost >= best:
+        return best
+    cost += _part_cost(n, xy, i, across, edges) + _part_cost(n, xy, j, n - across, edges)
     if cost >= best:
         return best
     if not clears(loop, n, xy, spacing, xy[i, 0], xy[i, 1], xy[j, 0], xy[j, 1], loop[i], loop[j], clearance):
