@@ -113,7 +113,9 @@ def best_chord(loop, n, xy, direction, angle, spacing, diameter, sampler, scale,
 
 
 @njit(nogil=True, cache=True)
-def refined_chord(loop, n, xy, direction, angle, spacing, diameter, sampler, scale, least, clearance, reach, best, found):
+def refined_chord(
+    loop, n, xy, direction, angle, spacing, diameter, sampler, scale, least, clearance, reach, best, found
+):
     """Search the pairs within ``reach`` places of the best chord so far."""
     at, across = found[0], found[3]
     for shift in range(-reach, reach + 1):

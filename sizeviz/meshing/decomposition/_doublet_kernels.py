@@ -42,7 +42,12 @@ def merge(points, quads, kept):
         c, d = _corner_of(quads, e, v), _corner_of(quads, f, v)
         if c < 0 or d < 0:  # merged away in this pass
             continue
-        a, b, opposite, other = quads[e, (c + 1) % 4], quads[e, (c + 3) % 4], quads[e, (c + 2) % 4], quads[f, (d + 2) % 4]
+        a, b, opposite, other = (
+            quads[e, (c + 1) % 4],
+            quads[e, (c + 3) % 4],
+            quads[e, (c + 2) % 4],
+            quads[f, (d + 2) % 4],
+        )
         if opposite == other or quads[f, (d + 1) % 4] != b or quads[f, (d + 3) % 4] != a:
             continue
         if worst_corner(points[other], points[a], points[opposite], points[b]) <= FLATTEST:

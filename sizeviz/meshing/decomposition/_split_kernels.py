@@ -104,7 +104,7 @@ def _push_parts(loop, n, found, stack, heads, state, first):
 
 
 @njit(nogil=True, cache=True)
-def _split(loop, n, xy, direction, angle, found, sampler, scale, stack, heads, points, state):
+def _split(loop, n, xy, found, sampler, scale, stack, heads, points, state):
     """Put the chosen chord's nodes in place and push both parts."""
     i, j, edges = found[0], found[1], found[2]
     first = state[N_POINTS]
@@ -114,15 +114,46 @@ def _split(loop, n, xy, direction, angle, found, sampler, scale, stack, heads, p
 
 
 @njit(nogil=True, cache=True)
+def _take(start, state):
+    """Take the topmost loop off the stack."""
+    state[N_LOOPS] -= 1
+    state[TOP] = start
+
+
+@njit(nogil=True, cache=True)
+def _one_loop(n, start, loop, xy, direction, angle, spacing, found, sampler, scale, stack, heads, points, quads, state,
+              finished):  # fmt: skip
+    """Finish or split the topmost loop; return DONE, or why it was left where it is."""
+    if len(points) - state[N_POINTS] < 2 or len(quads) - state[N_QUADS] < 4:
+        return FULL
+    demand, area = 0.0, 0.0
+    if n <= 6:
+        area = loop_area(n, xy)
+        demand, state[HINT] = _demand(n, xy, area, sampler, scale, state[HINT])
+    if n > 6 or demand > MOST_DEMAND * (n // 2):
+        found[4] = state[HINT]
+        if _choose(loop, n, xy, direction, angle, spacing, sampler, scale, found) < np.inf:
+            inner = found[2] - 1
+            room = min(len(points) - state[N_POINTS] - inner, len(stack) - start - n - 2 - 2 * inner)
+            if room < 0 or len(heads) < state[N_LOOPS] + 2:
+                return FULL
+            _take(start, state)
+            _split(loop, n, xy, found, sampler, scale, stack, heads, points, state)
+            return DONE
+        if n > 6:
+            return STUCK
+    _take(start, state)
+    _finish(loop, n, xy, demand, points, quads, state)
+    finished[0] += area
+    return DONE
+
+
+@njit(nogil=True, cache=True)
 def decompose(budget, sampler, scale, stack, heads, points, quads, state, finished):
     """Work on the stack until about ``budget`` node pairs have been looked at; return why it stopped."""
-    longest = 0
-    for k in range(state[N_LOOPS]):
-        longest = max(longest, heads[k + 1] - heads[k])
-    room = 2 * longest + 64
+    room, spent = 256, 0
     loop, xy, direction, angle, spacing = work_arrays(room)
     found = np.zeros(5, dtype=np.int64)
-    spent = 0
     while state[N_LOOPS] > 0:
         if spent > budget:
             return PAUSED
@@ -134,34 +165,9 @@ def decompose(budget, sampler, scale, stack, heads, points, quads, state, finish
         for k in range(n):  # slices assigned to slices compile slowly
             loop[k] = stack[start + k]
         unpack(loop, n, points, xy, direction, angle, spacing)
-        if len(points) - state[N_POINTS] < 2 or len(quads) - state[N_QUADS] < 4:
-            return FULL
-        demand = 0.0
-        if n <= 6:
-            area = loop_area(n, xy)
-            demand, state[HINT] = _demand(n, xy, area, sampler, scale, state[HINT])
-            if demand <= MOST_DEMAND * (n // 2):
-                state[N_LOOPS] -= 1
-                state[TOP] = start
-                _finish(loop, n, xy, demand, points, quads, state)
-                finished[0] += area
-                spent += 20
-                continue
-        found[4] = state[HINT]
-        cost = _choose(loop, n, xy, direction, angle, spacing, sampler, scale, found)
-        spent += min(n, LARGEST_SEARCH) ** 2 // 2
-        if cost == np.inf:
-            if n > 6:
-                return STUCK
-            state[N_LOOPS] -= 1
-            state[TOP] = start
-            _finish(loop, n, xy, demand, points, quads, state)
-            finished[0] += loop_area(n, xy)
-            continue
-        inner = found[2] - 1
-        if len(points) - state[N_POINTS] < inner or len(heads) < state[N_LOOPS] + 2 or len(stack) < start + n + 2 + 2 * inner:
-            return FULL
-        state[N_LOOPS] -= 1
-        state[TOP] = start
-        _split(loop, n, xy, direction, angle, found, sampler, scale, stack, heads, points, state)
+        outcome = _one_loop(n, start, loop, xy, direction, angle, spacing, found, sampler, scale, stack, heads, points,
+                            quads, state, finished)  # fmt: skip
+        if outcome != DONE:
+            return outcome
+        spent += 20 + min(n, LARGEST_SEARCH) ** 2 // 2
     return DONE

@@ -20,17 +20,21 @@ SIZE_WEIGHT = 0.15
 INNER_P, INNER_Q = 6, 7
 """The places, in a case's table, of the nodes inside."""
 
-_CASES = np.full((N_CASES, 4, 4), -1, dtype=np.int8)
-for _k in range(3):
-    _CASES[_k, 0] = [_k, _k + 1, _k + 2, _k + 3]
-    _CASES[_k, 1] = [_k + 3, (_k + 4) % 6, (_k + 5) % 6, _k]
-for _k in range(2):
-    for _part in range(3):
-        _CASES[3 + _k, _part] = [(_k + 2 * _part + _c) % 6 for _c in range(3)] + [INNER_P]
-for _k in range(6):
-    _0, _1, _2, _3, _4, _5 = ((_k + _c) % 6 for _c in range(6))
-    _CASES[5 + _k] = [[_0, _1, INNER_P, _5], [_1, _2, INNER_Q, INNER_P], [_2, _3, _4, INNER_Q], [_5, INNER_P, INNER_Q, _4]]
-CASES = _CASES
+
+def _case_table():
+    """Return the places of each element's corners, ``(11, 4, 4)``; rows that a case does not have are -1."""
+    table = np.full((N_CASES, 4, 4), -1, dtype=np.int8)
+    for k in range(3):
+        table[k, :2] = [k, k + 1, k + 2, k + 3], [k + 3, (k + 4) % 6, (k + 5) % 6, k]
+    for k in range(2):
+        table[3 + k, :3] = [[(k + c) % 6, (k + c + 1) % 6, (k + c + 2) % 6, INNER_P] for c in (0, 2, 4)]
+    for k in range(6):
+        a, b, c, d, e, f = ((k + c) % 6 for c in range(6))
+        table[5 + k] = [a, b, INNER_P, f], [b, c, INNER_Q, INNER_P], [c, d, e, INNER_Q], [f, INNER_P, INNER_Q, e]
+    return table
+
+
+CASES = _case_table()
 
 
 @njit(nogil=True, cache=True)

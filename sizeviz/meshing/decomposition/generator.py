@@ -7,7 +7,7 @@ Methods in Engineering 49, 1327-1350: the mesher of Ruiz-Girones, Roca, Sarrate 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -116,7 +116,7 @@ class _Work:
             monitor.step(min(float(self._area[0]) / area, 1.0), "splitting loops")
 
 
-def _doubled(array: NDArray) -> NDArray:
+def _doubled(array: NDArray[Any]) -> NDArray[Any]:
     larger = np.empty((2 * len(array), *array.shape[1:]), dtype=array.dtype)
     larger[: len(array)] = array
     return larger

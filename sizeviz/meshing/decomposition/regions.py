@@ -46,7 +46,8 @@ def regions(points: NDArray[np.float64], edges: NDArray[np.int32], bounding: NDA
     alone = np.setdiff1d(np.arange(len(points)), edges).astype(np.int32)
     around = [k for k in np.argsort(areas, kind="stable") if areas[k] > _rounding(points[cycles[k]])]
     inside: dict[int, list[NDArray[np.int32]]] = {int(k): [] for k in around}
-    for loop in [*(cycles[k] for k in range(len(cycles)) if k not in inside), *(alone[k : k + 1] for k in range(len(alone)))]:
+    loose = [cycles[k] for k in range(len(cycles)) if k not in inside] + list(alone[:, None])
+    for loop in loose:
         home = next((k for k in around if _encloses(points[cycles[k]], points[loop[0]])), None)
         if home is not None:
             inside[int(home)].append(loop)
