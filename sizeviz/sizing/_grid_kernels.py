@@ -17,6 +17,27 @@ from sizeviz.sizing._envelope_kernels import (
 
 
 @njit(nogil=True, cache=True)
+def block_minima(sizes, nx, ny, shapes):
+    """Return the least size of each cell, then of each block of 2 x 2, 4 x 4, ..., one after the other, ``(M,)``."""
+    lowest = np.empty(shapes[-1, 2] + 1)
+    for i in range(ny - 1):
+        for j in range(nx - 1):
+            k = i * nx + j
+            lowest[i * (nx - 1) + j] = min(min(sizes[k], sizes[k + 1]), min(sizes[k + nx], sizes[k + nx + 1]))
+    for level in range(1, len(shapes)):
+        rows, columns, below = shapes[level - 1, 0], shapes[level - 1, 1], shapes[level - 1, 2]
+        block = shapes[level, 2]
+        for i in range(shapes[level, 0]):
+            for j in range(shapes[level, 1]):
+                r, s = min(2 * i + 1, rows - 1) * columns, min(2 * j + 1, columns - 1)
+                first = below + 2 * i * columns
+                least = min(lowest[first + 2 * j], lowest[first + s])
+                lowest[block] = min(least, min(lowest[below + r + 2 * j], lowest[below + r + s]))
+                block += 1
+    return lowest
+
+
+@njit(nogil=True, cache=True)
 def block_bounds(grid, sizes, shapes):
     """Return the bounds of each cell, then of each block of 2 x 2, 4 x 4, ..., one after the other, ``(M, 5)``.
 

@@ -18,12 +18,12 @@ from sizeviz.sizing._envelope_kernels import LIMIT, PRESERVE
 from sizeviz.sizing._grid_kernels import block_bounds, envelope_rows
 from sizeviz.sizing._mesh_kernels import envelope_nodes, tree_bounds
 from sizeviz.sizing.edges import limited_by_edges, preserved_by_edges
+from sizeviz.sizing.pyramid import pyramid
 from sizeviz.threads import run_chunks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sizeviz.sizing.background import Grid
     from sizeviz.sizing.field import SizeField
     from sizeviz.sizing.options import LimitOptions, PreserveOptions
 
@@ -134,14 +134,3 @@ def _nodes_along(field: SizeField) -> NDArray[np.int64]:
     first = np.full(len(field.sizes), len(corners), dtype=np.int64)
     np.minimum.at(first, corners, np.arange(len(corners)))
     return np.argsort(first, kind="stable")
-
-
-def pyramid(grid: Grid) -> NDArray[np.int64]:
-    """Return rows, columns and first entry of each level of blocks over a grid's cells, ``(L, 3)``, finest first."""
-    rows, columns, first = grid.ny - 1, grid.nx - 1, 0
-    shapes = [(rows, columns, first)]
-    while rows > 1 or columns > 1:
-        first += rows * columns
-        rows, columns = -(-rows // 2), -(-columns // 2)
-        shapes.append((rows, columns, first))
-    return read_only(np.array(shapes, dtype=np.int64))

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sizeviz.geometry.arrays import as_points, as_sizes, read_only
+from sizeviz.geometry.arrays import as_cells, as_points, as_sizes, read_only
+from sizeviz.monitor import SILENT, Monitor
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -65,6 +66,23 @@ class SizeField:
         cells = tree.cells(self.background.points, self.sizes)
         return read_only(np.zeros(6)), self.sizes, cells, tree.boxes, tree.children
 
+    @cached_property
+    def searcher(self) -> tuple[NDArray[Any], ...]:
+        """What kernels hand to ``sizing._minimum_kernels.element_min``.
+
+        Returns
+        -------
+        tuple
+            The sampler's five arrays, then ``(shapes, lowest)``: the levels of a grid's pyramid (empty on a
+            triangulation) and the least size of each of its blocks, or under each node of the tree.
+        """
+        from sizeviz.sizing.pyramid import block_minima, pyramid
+
+        grid = self.background.grid
+        if grid is None:
+            return *self.sampler, read_only(np.empty((0, 3), dtype=np.int64)), self.background.tree.lowest(self.sizes)
+        return *self.sampler, pyramid(grid), block_minima(grid, self.sizes)
+
     def at(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the size at each of ``points`` (N, 2); outside the background that of its nearest point.
 
@@ -79,3 +97,42 @@ class SizeField:
         sizes = np.empty(len(where))
         sizes_at(self.sampler, where, sizes, 0, len(where))
         return sizes
+
+    def min_over(
+        self,
+        points: ArrayLike,
+        quads: ArrayLike,
+        threads: int | None = None,
+        monitor: Monitor = SILENT,
+    ) -> NDArray[np.float64]:
+        """Return the least size over each quadrilateral, exact for the piecewise-linear field.
+
+        Parameters
+        ----------
+        points : (P, 2) float64
+            Nodes of the elements, in model units.
+        quads : (Q, 4) int
+            Corners of each element, in order.
+        threads : int, optional
+            Worker threads; every core by default.
+        monitor : Monitor
+            Told of progress; may cancel.
+
+        Returns
+        -------
+        (Q,) float64
+            Corners outside the background count with its nearest point, the rest of an element only inside it.
+        """
+        from sizeviz.sizing._minimum_kernels import elements_min
+        from sizeviz.threads import run_chunks
+
+        where = as_points(points, "elements")
+        cells = as_cells(quads, 4, len(where), "elements")
+        least = np.empty(len(cells))
+        searcher = self.searcher
+
+        def fill(start: int, stop: int) -> None:
+            elements_min(searcher, where, cells, least, start, stop)
+
+        run_chunks(fill, len(cells), chunk=32768, threads=threads, monitor=monitor, message="Finding smallest sizes")
+        return least
