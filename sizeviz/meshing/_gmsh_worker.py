@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-Arrays = dict[str, "NDArray[np.generic]"]
+Arrays = dict[str, "NDArray[Any]"]
 
 
 def meshed(request: Mapping[str, Any]) -> Arrays:
@@ -129,7 +129,8 @@ def main(request: str, result: str) -> None:
     """Answer one request; both are ``.npz`` files."""
     with np.load(request) as arrays:
         content = {name: arrays[name] for name in arrays.files}
-    np.savez(result, **meshed(content))
+    answer: dict[str, Any] = meshed(content)
+    np.savez(result, **answer)
 
 
 if __name__ == "__main__":

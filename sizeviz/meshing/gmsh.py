@@ -13,7 +13,7 @@ import time
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -73,18 +73,19 @@ class GmshGenerator:
 
     def answer(
         self, domain: Domain, size: SizeField, options: MeshOptions, monitor: Monitor = SILENT
-    ) -> dict[str, NDArray[np.generic]]:
+    ) -> dict[str, NDArray[Any]]:
         """Return what Gmsh made, as it made it: points, triangles, quads, curve, and seconds of meshing alone."""
         if find_spec("gmsh") is None:
             raise MissingDependencyError("the gmsh mesher is not installed; install it: pip install 'sizeviz[gmsh]'")
         with tempfile.TemporaryDirectory(prefix="sizeviz-") as folder:
             request, result = Path(folder, "request.npz"), Path(folder, "result.npz")
-            np.savez(request, **self._request(domain, size, options))
+            content: dict[str, Any] = self._request(domain, size, options)
+            np.savez(request, **content)
             _run([sys.executable, "-P", str(WORKER), str(request), str(result)], monitor)
             with np.load(result) as arrays:
                 return {name: arrays[name] for name in arrays.files}
 
-    def _request(self, domain: Domain, size: SizeField, options: MeshOptions) -> dict[str, NDArray[np.generic]]:
+    def _request(self, domain: Domain, size: SizeField, options: MeshOptions) -> dict[str, NDArray[Any]]:
         curves = [np.vstack([c.points, c.points[:1]]) if c.closed else c.points for c in domain.curves]
         return {
             "curve_points": np.vstack(curves),
