@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from sizeviz.improvement._jit import compiled
@@ -112,3 +114,31 @@ def colour_blocks(size, quads, ring, count, colour):
         colour[b] = c
         most = max(most, c + 1)
     return most
+
+
+@compiled
+def ideal_counts(xy, quads, ring, count, boundary, ideal):
+    """Write the number of elements wanted at each node: 4 inside, one for each right angle on the boundary."""
+    for v in range(len(count)):
+        ideal[v] = 4
+        if not boundary[v]:
+            continue
+        angle = 0.0
+        for j in range(count[v]):
+            q, k = ring[v, j] >> 2, ring[v, j] & 3
+            n, p = quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
+            ax, ay, bx, by = xy[n, 0] - xy[v, 0], xy[n, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
+            angle += math.atan2(ax * by - ay * bx, ax * bx + ay * by)
+        ideal[v] = max(1, int(math.floor(angle / (0.5 * math.pi) + 0.5)))
+
+
+@compiled
+def own_nodes(tile_of, patch, zone):
+    """Write to each node its tile where every node around it has the same, else -1."""
+    _, quads, ring, count = patch
+    for v in range(len(count)):
+        zone[v] = tile_of[v]
+        for j in range(count[v]):
+            for k in range(4):
+                if tile_of[quads[ring[v, j] >> 2, k]] != tile_of[v]:
+                    zone[v] = -1

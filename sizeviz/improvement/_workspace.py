@@ -105,6 +105,31 @@ class Workspace:
         self.slide[nodes[_at_bends(self.curves, self.curve[nodes], self.station[nodes])]] = STUCK
         self.slide[self.fixed] = STUCK
 
+    @property
+    def patch(self) -> tuple[NDArray[Any], ...]:
+        """Positions, elements and adjacency, as kernels take them."""
+        return self.xy, self.quads, self.ring, self.count
+
+    @property
+    def rails(self) -> tuple[Any, ...]:
+        """Curves, and where on which of them each node is, as kernels take them."""
+        return self.curves, self.slide, self.station
+
+    def lengthen(self, nodes: int, quads: int) -> None:
+        """Add dead nodes and elements at the end of every array."""
+        self.xy = np.concatenate([self.xy, np.zeros((nodes, 2))])
+        for name, value in (("count", 0), ("curve", -1), ("fixed", False), ("slide", FREE), ("station", 0.0)):
+            setattr(self, name, longer(getattr(self, name), nodes, value))
+        self.ring = np.concatenate([self.ring, np.zeros((nodes, self.ring.shape[1]), dtype=np.int32)])
+        self.quads = np.concatenate([self.quads, np.full((quads, 4), -1, dtype=np.int32)])
+        for name, value in (("hint", 0), ("sizes", 1.0), ("inv", 1.0), ("bound", 0.0)):
+            setattr(self, name, longer(getattr(self, name), quads, value))
+
+    def compact(self) -> None:
+        """Drop dead nodes and elements and put the rest back in Hilbert order."""
+        self._adopt(self.result())
+        self.aim()
+
     def aim(self) -> None:
         """Look up the target of every element and the target scale c."""
         run_chunks(self._look_up, len(self.quads), chunk=65536, threads=self.options.threads)
@@ -126,8 +151,7 @@ class Workspace:
 
     def _sweep_part(self, first: int, last: int, blocks: NDArray[np.int64], law: tuple[int, float]) -> None:
         _sweep_kernels.sweep_blocks(
-            first, last, blocks, BLOCK, (self.xy, self.quads, self.ring, self.count), self.inv, self.bound,
-            law, (self.curves, self.slide, self.station), self.gain,
+            first, last, blocks, BLOCK, self.patch, self.inv, self.bound, law, self.rails, self.gain,
         )  # fmt: skip
 
     def moved(self, mesh: QuadMesh) -> QuadMesh:
@@ -142,6 +166,11 @@ class Workspace:
         rank = np.cumsum(alive, dtype=np.int32) - 1
         quads = self.quads[self.quads[:, 0] >= 0]
         return QuadMesh(self.xy[alive], read_only(rank[quads].astype(np.int32)), self.curve[alive], self.fixed[alive])
+
+
+def longer(array: NDArray[Any], more: int, value: float) -> NDArray[Any]:
+    """Return the array with ``more`` entries of ``value`` at its end."""
+    return np.concatenate([array, np.full(more, value, dtype=array.dtype)])
 
 
 def _curve_arrays(domain: Domain) -> tuple[Any, ...]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sizeviz.improvement.smoothing import smoothed
-from sizeviz.monitor import SILENT, Monitor
+from sizeviz.improvement._workspace import Workspace
+from sizeviz.improvement.cleanup import clean_fast, clean_wide
+from sizeviz.improvement.options import SmoothOptions
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
 
 if TYPE_CHECKING:
     from sizeviz.geometry.domain import Domain
     from sizeviz.geometry.quadmesh import QuadMesh
-    from sizeviz.improvement.options import SmoothOptions
     from sizeviz.sizing import SizeField
 
 
@@ -43,4 +44,14 @@ def improved(
     Cancelled
         If the monitor says so.
     """
-    return smoothed(mesh, domain, size, options, monitor)
+    options = options or SmoothOptions()
+    work = Workspace(mesh, domain, size, options)
+    if not options.cleanup:
+        work.sweep(options.sweeps, monitor)
+        return work.moved(mesh)
+    work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
+    clean_fast(work, SubMonitor(monitor, 0.05, 0.2))
+    work.sweep(4, SubMonitor(monitor, 0.2, 0.3))
+    clean_wide(work, options.rounds, SubMonitor(monitor, 0.3, 0.85))
+    work.sweep(options.sweeps, SubMonitor(monitor, 0.85, 1.0))
+    return work.result()

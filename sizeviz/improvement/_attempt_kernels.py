@@ -1,0 +1,268 @@
+"""One operation tried: applied, relaxed around, judged, and kept or undone bit for bit."""
+
+from __future__ import annotations
+
+import math
+
+from sizeviz.improvement._cavity_kernels import core_nodes, exchange, restore_links, save_links
+from sizeviz.improvement._energy_kernels import delta_squared, value
+from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._operation_kernels import (
+    COLLAPSE,
+    DOUBLET,
+    OPEN,
+    PILLOW,
+    ROTATE,
+    build_collapse,
+    build_doublet,
+    build_open,
+    build_pillow,
+    build_rotate,
+    build_swap,
+)
+from sizeviz.improvement._star_kernels import node_step
+from sizeviz.sizing._kernels import size_at
+
+SWEEPS = 15
+"""Most sweeps of the cavity and its ring before an operation is judged."""
+
+
+@compiled
+def element_measures(q, patch, inv, objective):
+    """Return an element's distortion above 4, smallest sigma, shape quality and longest edge^2 over target^2."""
+    xy, quads = patch[0], patch[1]
+    low, longest, shape = math.inf, 0.0, 0.0
+    for turn in range(2):
+        delta2 = delta_squared(low) if turn == 1 else 0.0
+        total = -4.0
+        for k in range(4):
+            v, w, p = quads[q, k], quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
+            ax, ay, bx, by = xy[w, 0] - xy[v, 0], xy[w, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
+            sigma = (ax * by - ay * bx) * inv[q]
+            a2 = (ax * ax + ay * ay) * inv[q]
+            square = a2 + (bx * bx + by * by) * inv[q]
+            if turn == 0:
+                low, longest = min(low, sigma), max(longest, a2)
+                shape += square / sigma
+            else:
+                total += square * value(sigma, objective, delta2)
+    return total, low, 8.0 / shape if low > 0.0 else 0.0, longest
+
+
+@compiled
+def measure(region, n, patch, inv, objective):
+    """Return total distortion, smallest sigma, worst quality and largest stretch of the elements of a region."""
+    total, low, quality, longest = 0.0, math.inf, 1.0, 0.0
+    for i in range(n):
+        t = element_measures(region[i], patch, inv, objective)
+        total += t[0]
+        low, quality, longest = min(low, t[1]), min(quality, t[2]), max(longest, t[3])
+    return total, low, quality, longest
+
+
+@compiled
+def collect_nodes(core, n_core, patch, marks, stamp, nodes):
+    """List the core nodes and the nodes of elements around them that the tile owns; -1 where a core node is not.
+
+    ``marks`` is (zone, tile, node marks, element marks).
+    """
+    _, quads, ring, count = patch
+    zone, tile, seen, _ = marks
+    n = 0
+    for i in range(n_core):
+        v = core[i]
+        if zone[v] != tile:
+            return -1
+        seen[v] = stamp
+        nodes[n] = v
+        n += 1
+    for i in range(n_core):
+        v = core[i]
+        for j in range(count[v]):
+            for k in range(4):
+                w = quads[ring[v, j] >> 2, k]
+                if zone[w] == tile and seen[w] != stamp:
+                    if n >= len(nodes):
+                        return -1
+                    seen[w] = stamp
+                    nodes[n] = w
+                    n += 1
+    return n
+
+
+@compiled
+def collect_region(nodes, n_nodes, patch, marks, stamp, region):
+    """List the elements around nodes, each once; return their number, which may exceed the room."""
+    ring, count, seen = patch[2], patch[3], marks[3]
+    n = 0
+    for i in range(n_nodes):
+        v = nodes[i]
+        for j in range(count[v]):
+            q = ring[v, j] >> 2
+            if seen[q] != stamp:
+                seen[q] = stamp
+                if n < len(region):
+                    region[n] = q
+                n += 1
+    return n
+
+
+@compiled
+def aim_elements(region, n, patch, aims):
+    """Look up the target of each element of a region; ``aims`` is (sampler, sizes, inv, hint, bound, c^2)."""
+    xy, quads = patch[0], patch[1]
+    sampler, sizes, inv, hint, _, scale2 = aims
+    for i in range(n):
+        q = region[i]
+        x = y = 0.0
+        for k in range(4):
+            x += 0.25 * xy[quads[q, k], 0]
+            y += 0.25 * xy[quads[q, k], 1]
+        size, there = size_at(sampler, x, y, max(hint[q], 0))
+        sizes[q], hint[q] = size, there
+        inv[q] = 1.0 / (scale2 * size * size)
+
+
+@compiled
+def relax(nodes, n, patch, aims, law, rails, star, hope):
+    """Sweep the nodes until they settle or ``hope``, the decrease still needed, is out of reach; return the decrease."""
+    total = 0.0
+    for s in range(SWEEPS):
+        step = 0.0
+        for i in range(n):
+            step += node_step(nodes[i], patch, aims[2], aims[4], law, rails, star)
+        total += step
+        left = SWEEPS - 1 - s
+        if step < 1e-4 or (s >= 2 and total + step * min(left, 4) < hope):
+            break
+    return total
+
+
+@compiled
+def build(kind, code, arg, births, patch, topo, room):
+    """Fill old, new and spots of ``room`` for one operation; return their lengths."""
+    ideal, guard, boundary = topo
+    old, new, spots, work = room[0], room[1], room[2], room[3]
+    if kind == DOUBLET:
+        return build_doublet(code, patch, old, new)
+    if kind == COLLAPSE:
+        return build_collapse(code, patch, guard, old, new, spots)
+    if kind == ROTATE:
+        return build_rotate(code, patch, guard, boundary, old, new, work)
+    if kind == OPEN:
+        return build_open(code, arg, births[0], patch, guard, boundary, old, new, spots, work)
+    if kind == PILLOW:
+        return build_pillow(code, births, patch, old, new, spots)
+    return build_swap(code, arg, patch, guard, old, new)
+
+
+@compiled
+def save_places(nodes, n, region, n_region, patch, rails, aims, kept):
+    """Copy positions of nodes and targets of elements before they change."""
+    for i in range(n):
+        v = nodes[i]
+        kept[3][i, 0], kept[3][i, 1], kept[3][i, 2] = patch[0][v, 0], patch[0][v, 1], rails[2][v]
+    for i in range(n_region):
+        q = region[i]
+        kept[4][i, 0], kept[4][i, 1] = aims[1][q], aims[2][q]
+        kept[5][i] = aims[3][q]
+
+
+@compiled
+def restore_places(nodes, n, region, n_region, patch, rails, aims, kept):
+    """Put back, bit for bit, what ``save_places`` copied."""
+    for i in range(n):
+        v = nodes[i]
+        patch[0][v, 0], patch[0][v, 1], rails[2][v] = kept[3][i, 0], kept[3][i, 1], kept[3][i, 2]
+    for i in range(n_region):
+        q = region[i]
+        aims[1][q], aims[2][q] = kept[4][i, 0], kept[4][i, 1]
+        aims[3][q] = kept[5][i]
+
+
+@compiled
+def better(before, after, change, law):
+    """Judge (distortion, sigma, quality, stretch) after an operation against before; law holds the guards.
+
+    ``law`` is (objective, worth of one unit of valence energy, lowest quality, largest squared stretch).
+    """
+    if after[1] <= 0.0 and before[1] > 0.0:
+        return False
+    if after[2] < min(before[2], law[2]) or after[3] > max(before[3], law[3]):
+        return False
+    return after[0] - before[0] + law[1] * change < -1e-3
+
+
+@compiled
+def attempt(kind, code, arg, change, patch, topo, marks, aims, rails, law, room, tops):
+    """Try one operation; return the number of nodes around it that were kept moved, or 0 where it was undone.
+
+    ``room`` is (old, new, spots, fan room, slots, core, nodes, region, births, star, kept, free nodes, free elements,
+    region afterwards); ``tops`` is (free nodes left, free elements left, stamp, ...).
+    """
+    old, new, spots, slots, core, nodes, region, births, star, kept = (
+        room[0], room[1], room[2], room[4], room[5], room[6], room[7], room[8], room[9], room[10],
+    )  # fmt: skip
+    for i in range(4):
+        births[i] = room[11][tops[0] - 1 - i] if tops[0] > i else -1
+    n_old, n_new, n_spots = build(kind, code, arg, births, patch, topo, room)
+    if n_old == 0:
+        return 0
+    n_core = core_nodes(old, n_old, new, n_new, patch[1], core)
+    extra = n_new - n_old
+    if n_core > len(core) or extra > tops[1]:
+        return 0
+    for i in range(n_new):
+        slots[i] = old[i] if i < n_old else room[12][tops[1] - 1 - (i - n_old)]
+    tops[2] += 1
+    n = collect_nodes(core, n_core, patch, marks, tops[2], nodes)
+    n_before = collect_region(nodes, n, patch, marks, tops[2], region)
+    if n < 0 or n_before + 8 > len(region):
+        return 0
+    before = measure(region, n_before, patch, aims[2], law[0])
+    save_links(old, n_old, core, n_core, patch, kept)
+    save_places(nodes, n, region, n_before, patch, rails, aims, kept)
+    fits = exchange(old, n_old, new, n_new, slots, patch)
+    for i in range(n_spots):
+        v = int(spots[i, 0])
+        patch[0][v, 0], patch[0][v, 1] = spots[i, 1], spots[i, 2]
+    if fits and relaxed_better(before, change, n, n_new, patch, marks, aims, rails, law, room, tops):
+        settle(kind, n_old, n_new, n_core, patch[3], room, tops)
+        return n
+    restore_links(old, n_old, core, n_core, slots, n_new, patch, kept)
+    restore_places(nodes, n, region, n_before, patch, rails, aims, kept)
+    return 0
+
+
+@compiled
+def relaxed_better(before, change, n, n_new, patch, marks, aims, rails, law, room, tops):
+    """Relax around a change just made and judge it."""
+    slots, nodes, region, star = room[4], room[6], room[13], room[9]
+    aim_elements(slots, n_new, patch, aims)
+    tops[2] += 1
+    n_after = collect_region(nodes, n, patch, marks, tops[2], region)
+    if n_after > len(region):
+        return False
+    raw = measure(region, n_after, patch, aims[2], law[0])
+    hope = raw[0] - before[0] + law[1] * change
+    relax(nodes, n, patch, aims, (law[0], 0.0), rails, star, hope)
+    aim_elements(region, n_after, patch, aims)
+    return better(before, measure(region, n_after, patch, aims[2], law[0]), change, law)
+
+
+@compiled
+def settle(kind, n_old, n_new, n_core, count, room, tops):
+    """Take rows and nodes that were used off the free lists, and put those that became free on them."""
+    if n_new > n_old:
+        tops[1] -= n_new - n_old
+    for i in range(n_new, n_old):
+        room[12][tops[1]] = room[0][i]
+        tops[1] += 1
+    if kind == OPEN:
+        tops[0] -= 1
+    elif kind == PILLOW:
+        tops[0] -= 4
+    for i in range(n_core):
+        if count[room[5][i]] == 0:
+            room[11][tops[0]] = room[5][i]
+            tops[0] += 1

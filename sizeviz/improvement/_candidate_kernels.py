@@ -1,0 +1,139 @@
+"""Which operations near an irregular node would lower the valence energy, and by how much, without applying any."""
+
+from __future__ import annotations
+
+from sizeviz.improvement._cavity_kernels import fan
+from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._operation_kernels import (
+    COLLAPSE,
+    DOUBLET,
+    OPEN,
+    PILLOW,
+    ROTATE,
+    SWAP,
+    gain,
+    hexagon,
+    node_energy,
+)
+
+MOST_CANDIDATES = 24
+
+
+@compiled
+def offer(kind, code, arg, change, limit, found, n):
+    """Insert an operation into the list sorted by its change of energy; return the new length."""
+    if change > limit:
+        return n
+    at = n
+    while at > 0 and found[at - 1, 3] > change:
+        at -= 1
+    if at >= len(found):
+        return n
+    last = min(n, len(found) - 1)
+    for i in range(last, at, -1):
+        found[i] = found[i - 1]
+    found[at, 0], found[at, 1], found[at, 2], found[at, 3] = kind, code, arg, change
+    return last + 1
+
+
+@compiled
+def collapse_change(a, c, b, d, count, topo):
+    """Return the change of energy when opposite corners a and c become one, or a large number."""
+    ideal, guard, boundary = topo
+    if guard[c]:
+        a, c = c, a
+    if guard[c]:
+        return 1 << 20
+    merged = node_energy(count[a] + count[c] - 2, ideal[a], boundary[a])
+    before = node_energy(count[a], ideal[a], boundary[a]) + node_energy(count[c], ideal[c], boundary[c])
+    return merged - before + gain(b, -1, count, ideal, boundary) + gain(d, -1, count, ideal, boundary)
+
+
+@compiled
+def swap_change(code, turn, patch, topo):
+    """Return the change of energy when an edge is turned, or a large number where it cannot be."""
+    ideal, guard, boundary = topo
+    other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
+    if other < 0 or (guard[v] and guard[w]):
+        return 1 << 20
+    s, t = (y1, x1) if turn == 0 else (y2, x2)
+    count = patch[3]
+    change = gain(v, -1, count, ideal, boundary) + gain(w, -1, count, ideal, boundary)
+    return change + gain(s, 1, count, ideal, boundary) + gain(t, 1, count, ideal, boundary)
+
+
+@compiled
+def offer_collapses(v, m, patch, topo, work, limit, found, n):
+    """Offer both diagonals of every element around the node."""
+    nodes, across, codes = work
+    count = patch[3]
+    for j in range(m):
+        code = codes[j]
+        change = collapse_change(v, across[j], nodes[j], nodes[j + 1], count, topo)
+        n = offer(COLLAPSE, code, 0, change, limit, found, n)
+        change = collapse_change(nodes[j], nodes[j + 1], v, across[j], count, topo)
+        n = offer(COLLAPSE, (code & ~3) | ((code + 1) & 3), 0, change, limit, found, n)
+    return n
+
+
+@compiled
+def offer_swaps(m, patch, topo, work, limit, found, n):
+    """Offer to turn every edge of the node, and every edge opposite so that it ends there."""
+    codes = work[2]
+    for j in range(m):
+        code = codes[j]
+        for turn in range(2):
+            n = offer(SWAP, code, turn, swap_change(code, turn, patch, topo), limit, found, n)
+        after = (code & ~3) | ((code + 1) & 3)
+        n = offer(SWAP, after, 1, swap_change(after, 1, patch, topo), limit, found, n)
+        after = (code & ~3) | ((code + 2) & 3)
+        n = offer(SWAP, after, 0, swap_change(after, 0, patch, topo), limit, found, n)
+    return n
+
+
+@compiled
+def offer_opens(v, m, patch, topo, work, limit, found, n):
+    """Offer every split of an inner node that leaves at least two elements on each side."""
+    ideal, guard, boundary = topo
+    nodes, _, codes = work
+    count = patch[3]
+    before = node_energy(m, 4, False)
+    for k in range(2, m // 2 + 1):
+        split = node_energy(k + 1, 4, False) + node_energy(m - k + 1, 4, False) - before
+        for j in range(m if 2 * k < m else k):
+            change = split + gain(nodes[j], 1, count, ideal, boundary)
+            change += gain(nodes[(j + k) % m], 1, count, ideal, boundary)
+            n = offer(OPEN, codes[j], k, change, limit, found, n)
+    return n
+
+
+@compiled
+def candidates(v, patch, topo, work, limit, found):
+    """List the operations near node v that change the energy by at most ``limit``, best first; return their number.
+
+    ``topo`` is (ideal, guard, boundary): elements wanted at each node, whether it may be removed or split, whether it
+    lies on the boundary. Rows of ``found`` are (kind, code, argument, change).
+    """
+    ideal, guard, boundary = topo
+    nodes, across, codes = work
+    count = patch[3]
+    m = fan(v, patch, boundary, nodes, across, codes)
+    if m < 1:
+        return 0
+    if m == 2 and not guard[v]:
+        change = gain(nodes[0], -1, count, ideal, boundary) + gain(nodes[1], -1, count, ideal, boundary)
+        return offer(DOUBLET, codes[0], 0, change - node_energy(2, ideal[v], False), limit, found, 0)
+    n = offer_collapses(v, m, patch, topo, work, limit, found, 0)
+    n = offer_swaps(m, patch, topo, work, limit, found, n)
+    if not guard[v]:
+        n = offer_opens(v, m, patch, topo, work, limit, found, n)
+        change = 0
+        for j in range(m):
+            change += gain(nodes[j], -1, count, ideal, boundary) + gain(across[j], 1, count, ideal, boundary)
+        n = offer(ROTATE, codes[0], 0, change, limit, found, n)
+    if m == 1 and boundary[v] and ideal[v] > 1:
+        change = 4 * node_energy(3, 4, False) + gain(v, 1, count, ideal, boundary)
+        for w in (nodes[0], across[0], nodes[1]):
+            change += gain(w, 1, count, ideal, boundary)
+        n = offer(PILLOW, codes[0], 0, change, limit, found, n)
+    return n

@@ -1,0 +1,65 @@
+"""The loop over the irregular nodes of one tile."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sizeviz.improvement._attempt_kernels import attempt
+from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates
+from sizeviz.improvement._jit import compiled
+
+MOST_VISITS = 12
+"""How often one node is taken from the queue in one pass, so that a pass ends."""
+
+
+@compiled
+def enqueue(v, queue, queued, tops):
+    """Append a node to the tile's queue unless it waits there already; ``tops[3:5]`` is (head, length)."""
+    if not queued[v]:
+        queued[v] = True
+        queue[(tops[3] + tops[4]) % len(queue)] = v
+        tops[4] += 1
+
+
+@compiled
+def seed_queue(first, last, patch, topo, marks, queue, queued, visits, tops):
+    """Queue the irregular nodes of an index range that the tile owns, and count visits from zero."""
+    for v in range(first, last):
+        visits[v] = 0
+        if patch[3][v] > 0 and marks[0][v] == marks[1] and patch[3][v] != topo[0][v]:
+            enqueue(v, queue, queued, tops)
+
+
+@compiled
+def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room, tops, queue, queued, visits):
+    """Visit up to ``budget`` queued nodes and apply at each the first operation that stands; return how many did.
+
+    ``limit`` is the largest change of valence energy considered, ``tries`` how many operations a visit may test.
+    """
+    found = np.empty((MOST_CANDIDATES, 4), np.int64)
+    done = 0
+    count, nodes = patch[3], room[6]
+    for _ in range(budget):
+        if tops[4] == 0:
+            break
+        v = queue[tops[3]]
+        tops[3] = (tops[3] + 1) % len(queue)
+        tops[4] -= 1
+        queued[v] = False
+        if count[v] == 0 or marks[0][v] != marks[1] or count[v] == topo[0][v] or visits[v] >= MOST_VISITS:
+            continue
+        visits[v] += 1
+        n = min(candidates(v, patch, topo, room[3], limit, found), tries)
+        for i in range(n):
+            near = attempt(
+                found[i, 0], found[i, 1], found[i, 2], found[i, 3],
+                patch, topo, marks, aims, rails, law, room, tops,
+            )  # fmt: skip
+            if near > 0:
+                done += 1
+                for j in range(near):
+                    w = nodes[j]
+                    if count[w] > 0 and count[w] != topo[0][w]:
+                        enqueue(w, queue, queued, tops)
+                break
+    return done

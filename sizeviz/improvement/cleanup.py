@@ -1,0 +1,202 @@
+"""Clean-up: operations on the connectivity that lower the valence energy, each relaxed before it is judged.
+
+The mesh is cut into tiles of consecutive nodes of the Hilbert order. An operation whose nodes, and whose neighbours'
+elements, lie within one tile touches nothing that another tile reads, so tiles run on any number of threads with the
+same result; the cuts are shifted from round to round.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sizeviz.improvement import _cleanup_kernels, _mesh_kernels
+from sizeviz.improvement._cavity_kernels import MOST_CORE, MOST_ELEMENTS
+from sizeviz.improvement._star_kernels import STAR_COLUMNS
+from sizeviz.improvement._workspace import Workspace, longer
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.threads import run_chunks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sizeviz.geometry.domain import Domain
+    from sizeviz.geometry.quadmesh import QuadMesh
+    from sizeviz.sizing import SizeField
+
+TILE = 8192
+"""Nodes of a tile."""
+SPARE = 64
+"""New nodes and elements that a tile has room for, beyond one in sixteen of its own."""
+MOST_NODES = 200
+MOST_REGION = 300
+WORTH = 0.5
+"""Distortion that one unit of valence energy is worth."""
+LOWEST_QUALITY = 0.35
+LARGEST_STRETCH = 1.5
+"""Longest edge over target size that an operation may leave, unless it was larger before."""
+BUDGET = 256
+"""Nodes visited between two looks at the monitor."""
+
+
+class _Tile:
+    """One tile's queue, free rows and scratch arrays."""
+
+    def __init__(self, number: int, nodes: NDArray[np.int64], spare: range, spare_quads: range, width: int) -> None:
+        self.number = number
+        self.first, self.last = int(nodes[0]), int(nodes[-1]) + 1
+        self.spare = spare
+        room = len(nodes) + len(spare)
+        self.queue = np.zeros(room, dtype=np.int64)
+        free_nodes, free_quads = np.zeros(room, dtype=np.int64), np.zeros(3 * room, dtype=np.int64)
+        free_nodes[: len(spare)], free_quads[: len(spare_quads)] = spare, spare_quads
+        self.tops = np.array([len(spare), len(spare_quads), 0, 0, 0], dtype=np.int64)
+        fan = tuple(np.zeros(MOST_ELEMENTS + 1, dtype=np.int64) for _ in range(3))
+        kept = (
+            np.zeros((MOST_ELEMENTS, 4), dtype=np.int32), np.zeros((MOST_CORE, width), dtype=np.int32),
+            np.zeros(MOST_CORE, dtype=np.int32), np.zeros((MOST_NODES, 3)), np.zeros((MOST_REGION, 2)),
+            np.zeros(MOST_REGION, dtype=np.int32),
+        )  # fmt: skip
+        self.room = (
+            np.zeros(MOST_ELEMENTS, dtype=np.int64), np.zeros((MOST_ELEMENTS + 2, 4), dtype=np.int64),
+            np.zeros((4, 3)), fan, np.zeros(MOST_ELEMENTS + 2, dtype=np.int64), np.zeros(MOST_CORE, dtype=np.int64),
+            np.zeros(MOST_NODES, dtype=np.int64), np.zeros(MOST_REGION, dtype=np.int64), np.zeros(4, dtype=np.int64),
+            np.zeros((width, STAR_COLUMNS)), kept, free_nodes, free_quads, np.zeros(MOST_REGION, dtype=np.int64),
+        )  # fmt: skip
+
+
+class Cleaner:
+    """The tiles of a workspace; ``work`` must be rebuilt (``Workspace.compact``) when they are done.
+
+    Parameters
+    ----------
+    work : Workspace
+        Whose arrays are changed in place, and lengthened.
+    shift : bool
+        Whether the cuts between tiles lie half a tile further on.
+    """
+
+    def __init__(self, work: Workspace, shift: bool = False) -> None:
+        self.work = work
+        n = len(work.xy)
+        tile_of = (np.arange(n, dtype=np.int64) + (TILE // 2 if shift and n > TILE else 0)) // TILE
+        n_tiles = int(tile_of[-1]) + 1
+        spare = SPARE + TILE // 16
+        self.patch = work.patch
+        boundary = np.zeros(n, dtype=np.bool_)
+        _mesh_kernels.mark_boundary(work.quads, work.ring, work.count, boundary)
+        ideal = np.zeros(n, dtype=np.int32)
+        _mesh_kernels.ideal_counts(work.xy, work.quads, work.ring, work.count, boundary, ideal)
+        zone = np.zeros(n, dtype=np.int32)
+        _mesh_kernels.own_nodes(tile_of, self.patch, zone)
+        guard = (work.curve >= 0) | work.fixed | boundary
+        more = n_tiles * spare
+        work.lengthen(more, more)
+        self.patch = work.patch
+        self.topo = (longer(ideal, more, 4), longer(guard, more, False), longer(boundary, more, False))
+        self.zone = np.concatenate([zone, np.repeat(np.arange(n_tiles, dtype=np.int32), spare)])
+        self.seen = np.zeros(n + more, dtype=np.int64), np.zeros(len(work.quads), dtype=np.int64)
+        self.queued, self.visits = np.zeros(n + more, dtype=np.bool_), np.zeros(n + more, dtype=np.int32)
+        first_quad = len(work.quads) - more
+        self.tiles = [
+            _Tile(
+                t, np.flatnonzero(tile_of == t), range(n + t * spare, n + (t + 1) * spare),
+                range(first_quad + t * spare, first_quad + (t + 1) * spare), work.ring.shape[1],
+            )
+            for t in range(n_tiles)
+        ]  # fmt: skip
+
+    def run(self, limit: int, tries: int, monitor: Monitor = SILENT) -> int:
+        """Make one pass with operations that change the valence energy by at most ``limit``; return how many stood."""
+        for tile in self.tiles:
+            for first, last in ((tile.first, tile.last), (tile.spare.start, tile.spare.stop)):
+                _cleanup_kernels.seed_queue(
+                    first, last, self.patch, self.topo, self._marks(tile), tile.queue, self.queued, self.visits,
+                    tile.tops,
+                )  # fmt: skip
+        waiting = list(self.tiles)
+        total = max(1, sum(int(tile.tops[4]) for tile in waiting))
+        done = np.zeros(len(self.tiles), dtype=np.int64)
+        share = 0.0
+        while waiting:
+            left = sum(int(tile.tops[4]) for tile in waiting) / total
+            part = SubMonitor(monitor, share, max(share, 1.0 - left))
+            share = part.stop
+
+            def visit(first: int, last: int, waiting: list[_Tile] = waiting) -> None:
+                for tile in waiting[first:last]:
+                    done[tile.number] += self._visit(tile, limit, tries)
+
+            run_chunks(visit, len(waiting), chunk=1, threads=self.work.options.threads, monitor=part,
+                       message="cleaning up")  # fmt: skip
+            waiting = [tile for tile in waiting if tile.tops[4] > 0]
+        return int(done.sum())
+
+    def _marks(self, tile: _Tile) -> tuple[Any, ...]:
+        return self.zone, tile.number, *self.seen
+
+    def _visit(self, tile: _Tile, limit: int, tries: int) -> int:
+        work = self.work
+        aims = (work.size.sampler, work.sizes, work.inv, work.hint, work.bound, work.scale**2)
+        law = (work.objective, WORTH, LOWEST_QUALITY, LARGEST_STRETCH**2)
+        return _cleanup_kernels.clean_tile(
+            BUDGET, limit, tries, self.patch, self.topo, self._marks(tile), aims, work.rails, law,
+            tile.room, tile.tops, tile.queue, self.queued, self.visits,
+        )  # fmt: skip
+
+
+def cleaned(
+    mesh: QuadMesh,
+    domain: Domain,
+    size: SizeField,
+    options: SmoothOptions | None = None,
+    monitor: Monitor = SILENT,
+) -> QuadMesh:
+    """Return the mesh with fewer irregular nodes.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+        A raw mesh.
+    domain : Domain
+        The domain it was made for; every boundary node and constrained edge is kept.
+    size : SizeField
+        Target sizes, up to a common factor, which operations must not stray from.
+    options : SmoothOptions, optional
+        ``objective``, ``rounds`` and ``threads`` are used.
+    monitor : Monitor
+        Told of progress.
+
+    Raises
+    ------
+    InputError
+        If the mesh is empty or does not belong to the domain.
+    Cancelled
+        If the monitor says so.
+    """
+    options = options or SmoothOptions()
+    work = Workspace(mesh, domain, size, options)
+    work.aim()
+    clean_fast(work, SubMonitor(monitor, 0.0, 0.2))
+    clean_wide(work, options.rounds, SubMonitor(monitor, 0.2, 1.0))
+    return work.result()
+
+
+def clean_fast(work: Workspace, monitor: Monitor = SILENT) -> None:
+    """Apply operations that lower the valence energy, the strongest first."""
+    cleaner = Cleaner(work)
+    cleaner.run(-3, 4, SubMonitor(monitor, 0.0, 0.3))
+    cleaner.run(-1, 6, SubMonitor(monitor, 0.3, 1.0))
+    work.compact()
+
+
+def clean_wide(work: Workspace, rounds: int, monitor: Monitor = SILENT) -> None:
+    """Apply operations that do not raise the valence energy, with three sweeps after each round."""
+    for n in range(rounds):
+        part = SubMonitor(monitor, n / rounds, (n + 1) / rounds)
+        cleaner = Cleaner(work, shift=n % 2 == 0)
+        cleaner.run(-1, 6, SubMonitor(part, 0.0, 0.2))
+        cleaner.run(0, 3, SubMonitor(part, 0.2, 0.8))
+        work.compact()
+        work.sweep(3, SubMonitor(part, 0.8, 1.0))
