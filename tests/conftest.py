@@ -76,3 +76,11 @@ def pytest_make_collect_report(
         report.outcome = "failed"
         report.longrepr = f"skipped, which CI does not allow: {report.longrepr}"
     return report
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Never test compiled code that was made from other sources; the workers of xdist start after this."""
+    if not hasattr(config, "workerinput"):
+        from sizeviz.compiled import drop_stale
+
+        drop_stale()

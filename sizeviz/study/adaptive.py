@@ -1,0 +1,222 @@
+"""The adaptive process, Algorithm 3: each mesh is the background that the sizes of the next one live on.
+
+Ruiz-Girones, Roca, Sarrate (2013), Section 5, DOI 10.1007/978-3-319-02335-9. Meshes are kept on disk, one file an
+iteration, so that a long process needs no more memory than a short one, and can be taken up again.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sizeviz.conformity import judged
+from sizeviz.errors import InputError
+from sizeviz.files import output_folder, read_mesh, write_mesh
+from sizeviz.geometry import QuadMesh
+from sizeviz.meshing import generated
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.sizing import BackgroundMesh, Grid, SizeField
+from sizeviz.study.evolution import Evolution, Iteration, read_evolution, write_evolution
+from sizeviz.study.options import StudyOptions
+from sizeviz.study.pipeline import METHODS, run
+from sizeviz.study.report import mesh_arrays, options_as_typed
+from sizeviz.study.study import Study
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from sizeviz.conformity import Measure, MeshReport
+    from sizeviz.geometry import Domain
+    from sizeviz.sizing import SizeFunction
+    from sizeviz.sources import Source
+
+FREE: tuple[str, ...] = ("threads", "max_elements")
+"""Options that do not decide the meshes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AdaptOptions:
+    """What an adaptive process is asked to do.
+
+    Parameters
+    ----------
+    method : str
+        One of ``METHODS``: what is done to the sizes on each background. Default size preserving.
+    study : StudyOptions
+        Of every stage of every iteration.
+    cells : int
+        Elements along the longer side of the domain in the uniform mesh to start from. Default 80.
+    limit : float
+        Converged when no element's R against the given field exceeds this. Default 1.1.
+    iterations : int
+        Give up after this many meshes. Default 50.
+    measure : {'mean-edge', 'sqrt-area', 'max-edge'}
+        Size of an element in R.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    method: str = "size-preserving"
+    study: StudyOptions = field(default_factory=StudyOptions)
+    cells: int = 80
+    limit: float = 1.1
+    iterations: int = 50
+    measure: Measure = "mean-edge"
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise InputError(f"method {self.method!r} is unknown; choose one of {', '.join(METHODS)}")
+        if self.cells < 1 or self.iterations < 1:
+            raise InputError(f"cells is {self.cells} and iterations {self.iterations}; at least 1 of each is needed")
+        if not self.limit > 0:
+            raise InputError(f"the limit of R is {self.limit}; it must be above 0, such as 1.1")
+
+    def as_recorded(self) -> dict[str, object]:
+        """Return what decides the meshes."""
+        typed = {name: value for name, value in options_as_typed(self.study).items() if name not in FREE}
+        return {"method": self.method, "cells": self.cells, "measure": self.measure, **typed}
+
+
+def adapted(source: Source, options: AdaptOptions, out: str | Path, monitor: Monitor = SILENT) -> Evolution:
+    """Run the process until a mesh keeps the limit, or to the last iteration; take it up where it was left.
+
+    Writes ``mesh-000.vtu``, ``mesh-001.vtu``, ... and ``evolution.json`` into the folder after each iteration.
+
+    Parameters
+    ----------
+    source : Source
+        Its domain is meshed; its ``reference`` gives the sizes at the nodes of each mesh, and judges it.
+    options : AdaptOptions
+        What is asked for.
+    out : path-like
+        The process's folder; if it holds the record of the same process, that is continued.
+    monitor : Monitor
+        Told the iteration and its stage.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written, or holds another process.
+    MeshingError
+        If an iteration makes no valid mesh.
+    Cancelled
+        If the monitor says so; finished iterations stay on disk.
+    """
+    with output_folder(out) as folder:
+        evolution = _taken_up(source, options, folder)
+        mesh = _last_mesh(evolution, folder)
+        for number in range(len(evolution.iterations), options.iterations + 1):
+            if evolution.converged:
+                break
+            part = SubMonitor(monitor, number / (options.iterations + 1), (number + 1) / (options.iterations + 1))
+            mesh, row = _iterated(number, mesh, source, options, folder, part)
+            evolution = replace(evolution, iterations=(*evolution.iterations, row))
+            write_evolution(folder, evolution)
+        monitor.step(1.0)
+        return evolution
+
+
+def background_of(mesh: QuadMesh, reference: SizeFunction) -> SizeField:
+    """Return the sizes that a function has at a mesh's nodes, on its quadrilaterals cut in two.
+
+    The diagonal is the one whose smaller triangle is larger: it lies inside wherever the element is not convex.
+    """
+    a, b, c, d = (mesh.points[mesh.quads[:, k]] for k in range(4))
+    along_ac = np.minimum(_twice_area(a, b, c), _twice_area(a, c, d))
+    along_bd = np.minimum(_twice_area(a, b, d), _twice_area(b, c, d))
+    order = np.where((along_bd > along_ac)[:, None], [1, 2, 3, 0], [0, 1, 2, 3])
+    turned = np.take_along_axis(mesh.quads, order, axis=1)
+    triangles = np.vstack([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])
+    return SizeField(BackgroundMesh(mesh.points, triangles), reference.at(mesh.points), label="background")
+
+
+def uniform_mesh(domain: Domain, cells: int, options: StudyOptions, monitor: Monitor = SILENT) -> QuadMesh:
+    """Return a mesh of equal elements, ``cells`` along the domain's longer side; of a rectangle, a grid of squares."""
+    x0, y0, x1, y1 = domain.bounds
+    h = max(x1 - x0, y1 - y0) / cells
+    if len(domain.holes) or len(domain.outer) != 4 or not np.isclose(domain.area, (x1 - x0) * (y1 - y0), rtol=1e-12):
+        grid = Grid(x0, y0, (x1 - x0) / 2, (y1 - y0) / 2, 3, 3)
+        field_ = SizeField(BackgroundMesh.regular(grid), np.full(9, h), label="uniform")
+        return generated(domain, field_, replace(options.mesh, scale=1.0), monitor)
+    nx, ny = max(1, round((x1 - x0) / h)), max(1, round((y1 - y0) / h))
+    grid = Grid(x0, y0, (x1 - x0) / nx, (y1 - y0) / ny, nx + 1, ny + 1)
+    points = BackgroundMesh.regular(grid).points
+    corner = (np.arange(ny)[:, None] * (nx + 1) + np.arange(nx)).ravel()
+    quads = np.column_stack([corner, corner + 1, corner + nx + 2, corner + nx + 1]).astype(np.int32)
+    return QuadMesh(points, quads, np.full(len(points), -1, dtype=np.int32), np.zeros(len(points), dtype=bool))
+
+
+def _taken_up(source: Source, options: AdaptOptions, folder: Path) -> Evolution:
+    fresh = Evolution(source=source.name, options=options.as_recorded(), limit=options.limit)
+    found = read_evolution(folder)
+    if found is None:
+        return fresh
+    if not found.continues(fresh):
+        raise InputError(f"{folder}: holds another adaptive process; choose another --out, or remove that folder")
+    return found
+
+
+def _last_mesh(evolution: Evolution, folder: Path) -> QuadMesh | None:
+    return read_mesh(folder / evolution.iterations[-1].mesh).mesh if evolution.iterations else None
+
+
+def _iterated(
+    number: int, mesh: QuadMesh | None, source: Source, options: AdaptOptions, folder: Path, monitor: Monitor
+) -> tuple[QuadMesh, Iteration]:
+    """Return the next mesh, written to the folder, and its row."""
+    monitor.step(0.0, f"iteration {number}")
+    began = time.perf_counter()
+    name = f"mesh-{number:03d}.vtu"
+    beta = options.study.beta
+    if mesh is None:
+        made = uniform_mesh(source.domain, options.cells, options.study, monitor)
+        report = judged(made, source.reference, beta=beta)
+        write_mesh(folder / name, made, _cells(report, options.measure))
+        return made, _row(number, name, report, report, options.measure, time.perf_counter() - began)
+    background = background_of(mesh, source.reference)
+    study = run(Study(replace(source, field=background), options.study), (options.method,), SubMonitor(monitor, 0, 0.9))
+    made, cells, points = mesh_arrays(study, options.method, options.measure)
+    against = judged(made, background, beta=beta, monitor=SubMonitor(monitor, 0.9, 1.0))
+    write_mesh(folder / name, made, cells, points)
+    whole = study.runs[options.method].report
+    assert whole is not None
+    return made, _row(number, name, against, whole, options.measure, time.perf_counter() - began)
+
+
+def _cells(report: MeshReport, measure: Measure) -> dict[str, NDArray[np.float64]]:
+    return {"ratio": report.ratios[measure], "quality": report.quality, "size": report.sizes[measure]}
+
+
+def _row(
+    number: int, name: str, background: MeshReport, analytic: MeshReport, measure: Measure, seconds: float
+) -> Iteration:
+    quality = analytic.quality_summary
+    return Iteration(
+        number=number,
+        mesh=name,
+        n_quads=int(analytic.n_quads),
+        n_nodes=int(analytic.n_nodes),
+        background_ratio=float(background.max_ratio[measure]),
+        analytic_ratio=float(analytic.max_ratio[measure]),
+        background_correct=float(background.correct_percent[measure]),
+        analytic_correct=float(analytic.correct_percent[measure]),
+        quality_min=float(quality["min"]),
+        quality_mean=float(quality["mean"]),
+        quality_max=float(quality["max"]),
+        quality_std=float(quality["std"]),
+        irregular=float(analytic.irregular_percent),
+        seconds=round(seconds, 3),
+    )
+
+
+def _twice_area(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> NDArray[np.float64]:
+    u, v = b - a, c - a
+    return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
