@@ -3,8 +3,10 @@
 import numpy as np
 from numba import njit
 
+from sizeviz.sizing._tree_kernels import uncounted
 
-@njit(nogil=True, cache=True)
+
+@uncounted
 def heap_push(keys, nodes, count, key, node):
     """Insert into a binary min-heap held in two arrays; return the new count."""
     at = count
@@ -18,7 +20,7 @@ def heap_push(keys, nodes, count, key, node):
     return count + 1
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def heap_drop(keys, nodes, count):
     """Remove the least entry, which the caller has read from row 0; return the new count."""
     count -= 1
@@ -36,7 +38,7 @@ def heap_drop(keys, nodes, count):
     return count
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def settle(start, ends, lengths, epsilon, labels, keys, nodes, count, most):
     """Take up to ``most`` entries off Dijkstra's heap, relaxing labels by epsilon times length; return the count left.
 
@@ -70,7 +72,7 @@ def shrink_balls(start, ends, lengths, sizes, alpha, beta, printed, out, first, 
         out[node] = beta * radius / alpha
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _shrink_ball(start, ends, lengths, sizes, alpha, printed, origin, distance, reached, keys, nodes):
     """Return the ball's final radius at one node; leave ``distance`` infinite again."""
     distance[origin] = 0.0
@@ -98,7 +100,7 @@ def _shrink_ball(start, ends, lengths, sizes, alpha, printed, origin, distance, 
     return radius
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def next_radius(radius, own, d, printed):
     """Return the ball's radius after a node, and whether the search goes on from there (lines 13 to 22).
 

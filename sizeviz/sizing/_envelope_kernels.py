@@ -7,7 +7,8 @@ with coefficient = epsilon, where d = |x - y|. Both are convex on a triangle whe
 import math
 
 import numpy as np
-from numba import njit
+
+from sizeviz.sizing._tree_kernels import uncounted
 
 LIMIT, PRESERVE = 0, 1
 """Which envelope: (min, +) or (min, max)."""
@@ -19,7 +20,7 @@ LEAST, BASE, SLOPE_X, SLOPE_Y, SLOPE = range(5)
 """Columns of a block's bounds: h(y) is at least LEAST, and at least BASE + (SLOPE_X, SLOPE_Y) (y - centre)."""
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def may_improve(kind, coefficient, least, d2, best):
     """Return whether sizes of at least ``least`` at squared distances of at least ``d2`` could beat ``best``."""
     if least >= best:
@@ -29,7 +30,7 @@ def may_improve(kind, coefficient, least, d2, best):
     return coefficient * coefficient * d2 < (best - least) ** 2
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def block_may_improve(kind, coefficient, bounds, block, x, y, half_x, half_y, best):
     """Return whether a block could beat ``best`` at the origin.
 
@@ -59,7 +60,7 @@ def block_may_improve(kind, coefficient, bounds, block, x, y, half_x, half_y, be
     return bounds[block, BASE] + weight * distance - slack < best * (1.0 - ROUNDING)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def join_bounds(bounds, block, child, x, y, half_x, half_y):
     """Lower a block's plane, whose slope is set, until it lies below a child's over the child's box.
 
@@ -71,7 +72,7 @@ def join_bounds(bounds, block, child, x, y, half_x, half_y):
     bounds[block, LEAST] = min(bounds[block, LEAST], bounds[child, LEAST])
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def start_bounds(bounds, block, slope_x, slope_y):
     """Set a block's slope and open its bounds."""
     bounds[block, LEAST] = np.inf
@@ -80,14 +81,14 @@ def start_bounds(bounds, block, slope_x, slope_y):
     bounds[block, SLOPE] = math.hypot(slope_x, slope_y)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def plane_of(ux, uy, rise_u, vx, vy, rise_v):
     """Return the gradient of the linear function that rises by ``rise_u`` along u and ``rise_v`` along v."""
     det = ux * vy - uy * vx
     return (rise_u * vy - rise_v * uy) / det, (rise_v * ux - rise_u * vx) / det
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def on_edge(kind, coefficient, ax, ay, ha, bx, by, hb, best):
     """Return the envelope of one edge at the origin, or ``best`` where that is lower.
 
@@ -107,7 +108,7 @@ def on_edge(kind, coefficient, ax, ay, ha, bx, by, hb, best):
     return min(best, _preserved_on_edge(coefficient, ha, hb - ha, length2, foot, height2))
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _limited_on_edge(epsilon, ha, rise, length, foot, height):
     """Minimise ha + rise s + epsilon |distance at s| over 0 <= s <= 1."""
     slope = rise / length
@@ -119,7 +120,7 @@ def _limited_on_edge(epsilon, ha, rise, length, foot, height):
     return ha + rise * s + epsilon * math.hypot(height, (s - foot) * length)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _preserved_on_edge(alpha, ha, rise, length2, foot, height2):
     """Minimise max(ha + rise s, distance at s / alpha) over 0 <= s <= 1."""
     near = min(max(foot, 0.0), 1.0)
@@ -144,13 +145,13 @@ def _preserved_on_edge(alpha, ha, rise, length2, foot, height2):
     )
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _into(one, other, s):
     """Return s, moved into the interval between two numbers."""
     return min(max(s, min(one, other)), max(one, other))
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def on_triangle(kind, coefficient, ax, ay, ha, bx, by, hb, cx, cy, hc, best):
     """Return the envelope of one counter-clockwise triangle at the origin, or ``best`` where that is lower.
 

@@ -14,6 +14,7 @@ from sizeviz.sizing._envelope_kernels import (
     on_triangle,
     start_bounds,
 )
+from sizeviz.sizing._tree_kernels import uncounted
 
 
 @njit(nogil=True, cache=True)
@@ -61,7 +62,7 @@ def block_bounds(grid, sizes, shapes):
     return bounds
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _bound_cells(grid, sizes, bounds):
     nx, ny, dx, dy = int(grid[4]), int(grid[5]), grid[2], grid[3]
     for i in range(ny - 1):
@@ -75,7 +76,7 @@ def _bound_cells(grid, sizes, bounds):
             bounds[cell, BASE] = min(min(h00 + p, h11 - p), min(h01 - q, h10 + q))
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _bound_block(bounds, shapes, level, i, j, half_x, half_y):
     rows, columns, first = shapes[level - 1, 0], shapes[level - 1, 1], shapes[level - 1, 2]
     slope_x, slope_y, count = 0.0, 0.0, 0
@@ -108,7 +109,7 @@ def envelope_rows(kind, coefficient, scale, grid, sizes, shapes, bounds, out, fi
             out[i * nx + j] = scale * best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _search(kind, coefficient, grid, sizes, shapes, bounds, i, j, best, stack, tested, found):
     """Descend into every block that may lower the envelope at node (i, j); remember the cell that was best."""
     top = _push_around(kind, coefficient, grid, shapes, bounds, i, j, best, stack, tested)
@@ -131,7 +132,7 @@ def _search(kind, coefficient, grid, sizes, shapes, bounds, i, j, best, stack, t
     return best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _push_around(kind, coefficient, grid, shapes, bounds, i, j, best, stack, tested):
     """Push the blocks, about as large as the ball that matters, that meet it."""
     radius = coefficient * best if kind == PRESERVE else (best - bounds[shapes[-1, 2], LEAST]) / coefficient
@@ -151,7 +152,7 @@ def _push_around(kind, coefficient, grid, shapes, bounds, i, j, best, stack, tes
     return top
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _push_children(kind, coefficient, grid, shapes, bounds, i, j, best, level, row, column, stack, tested, top):
     """Push the quarters of a block that may improve, the one nearest to node (i, j) last."""
     below = level - 1
@@ -170,7 +171,7 @@ def _push_children(kind, coefficient, grid, shapes, bounds, i, j, best, level, r
     return top
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _may_improve(kind, coefficient, grid, shapes, bounds, i, j, level, row, column, best):
     """Return whether a block (which may overhang the grid) could lower the envelope at node (i, j)."""
     side = 1 << level
@@ -180,7 +181,7 @@ def _may_improve(kind, coefficient, grid, shapes, bounds, i, j, level, row, colu
     return block_may_improve(kind, coefficient, bounds, block, x, y, half_x, half_y, best)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _on_cell(kind, coefficient, grid, sizes, i, j, row, column, best):
     """Return the envelope of the two triangles of a cell at node (i, j), or ``best`` where that is lower."""
     nx = int(grid[4])

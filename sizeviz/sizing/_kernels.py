@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from sizeviz.sizing._tree_kernels import FANOUT, box_distance2
+from sizeviz.sizing._tree_kernels import FANOUT, box_distance2, uncounted
 
 LONGEST_WALK = 32
 """Triangles crossed before the walk gives up and the tree is asked."""
@@ -12,7 +12,7 @@ ROUNDING = 1e-12
 """How far outside a triangle, in barycentric terms, a point still counts as inside."""
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def size_at(sampler, x, y, hint):
     """Return the piecewise-linear size at a point, and a hint for the next point nearby.
 
@@ -37,7 +37,7 @@ def size_at(sampler, x, y, hint):
     return _size_by_walking(cells, sampler[3], sampler[4], x, y, current)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def sizes_at(sampler, points, out, start, stop):
     """Fill rows ``start`` to ``stop`` of ``out`` with the sizes at ``points``."""
     hint = 0
@@ -45,7 +45,7 @@ def sizes_at(sampler, points, out, start, stop):
         out[i], hint = size_at(sampler, points[i, 0], points[i, 1], hint)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _size_on_grid(grid, sizes, x, y):
     nx, ny = int(grid[4]), int(grid[5])
     u = min(max((x - grid[0]) / grid[2], 0.0), nx - 1.0)
@@ -62,7 +62,7 @@ def _size_on_grid(grid, sizes, x, y):
     return (1.0 - v) * here + (v - u) * above + u * across
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _weights(cells, t, x, y):
     """Return a point's unscaled barycentric weights in triangle ``t``: negative outside the opposite edge."""
     ax, ay = cells[t, 0] - x, cells[t, 1] - y
@@ -71,14 +71,14 @@ def _weights(cells, t, x, y):
     return bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _blend(cells, t, wa, wb, wc):
     """Interpolate with weights cut off at zero, so that rounding never leaves the range of the three sizes."""
     wa, wb, wc = max(wa, 0.0), max(wb, 0.0), max(wc, 0.0)
     return (wa * cells[t, 6] + wb * cells[t, 7] + wc * cells[t, 8]) / (wa + wb + wc)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _size_by_walking(cells, boxes, children, x, y, current):
     """Walk towards the point from triangle to triangle; ask the tree where the walk meets an edge or takes long."""
     for _ in range(LONGEST_WALK):
@@ -100,7 +100,7 @@ def _size_by_walking(cells, boxes, children, x, y, current):
     return _blend(cells, nearest, wa, wb, wc), nearest
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def _nearest_triangle(cells, boxes, children, x, y):
     """Return the triangle that holds a point or lies nearest to it, by branch and bound."""
     n_leaves = (len(cells) + FANOUT - 1) // FANOUT
@@ -124,7 +124,7 @@ def _nearest_triangle(cells, boxes, children, x, y):
     return nearest
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def push_nearer_last(boxes, children, node, x, y, stack, top):
     """Push a node's children so that the nearest box is popped first; return the new top."""
     base = top
@@ -139,7 +139,7 @@ def push_nearer_last(boxes, children, node, x, y, stack, top):
     return top
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _nearest_point(cells, t, x, y):
     """Return the point of a triangle nearest to (x, y)."""
     wa, wb, wc = _weights(cells, t, x, y)

@@ -14,7 +14,7 @@ from sizeviz.sizing._envelope_kernels import (
     plane_of,
     start_bounds,
 )
-from sizeviz.sizing._tree_kernels import FANOUT
+from sizeviz.sizing._tree_kernels import FANOUT, uncounted
 
 
 @njit(nogil=True, cache=True)
@@ -34,7 +34,7 @@ def tree_bounds(cells, boxes, children):
     return bounds
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _bound_leaf(bounds, node, cells, boxes, first, last):
     slope_x, slope_y = 0.0, 0.0
     for t in range(first, last):
@@ -51,7 +51,7 @@ def _bound_leaf(bounds, node, cells, boxes, first, last):
             bounds[node, LEAST] = min(bounds[node, LEAST], size)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _gradient(cells, t):
     ax, ay, ha = cells[t, 0], cells[t, 1], cells[t, 6]
     return plane_of(
@@ -59,7 +59,7 @@ def _gradient(cells, t):
     )
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _bound_inner(bounds, node, boxes, first, last):
     slope_x, slope_y = 0.0, 0.0
     for child in range(first, last):
@@ -87,7 +87,7 @@ def envelope_nodes(kind, coefficient, scale, points, sizes, order, cells, boxes,
         out[i] = scale * best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _search(kind, coefficient, cells, boxes, children, bounds, x, y, best, stack, tested, found):
     """Descend into every box that may lower the envelope at (x, y); return it and the triangle that was best."""
     n_leaves = (len(cells) + FANOUT - 1) // FANOUT
@@ -108,7 +108,7 @@ def _search(kind, coefficient, cells, boxes, children, bounds, x, y, best, stack
     return best, found
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _push_children(kind, coefficient, boxes, children, bounds, node, x, y, best, stack, tested, top):
     """Push the children that may improve, the one with the nearest centre last."""
     base = top
@@ -126,20 +126,20 @@ def _push_children(kind, coefficient, boxes, children, bounds, node, x, y, best,
     return top
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _centre_distance2(boxes, node, x, y):
     dx, dy = 0.5 * (boxes[node, 0] + boxes[node, 2]) - x, 0.5 * (boxes[node, 1] + boxes[node, 3]) - y
     return dx * dx + dy * dy
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _may_improve(kind, coefficient, boxes, bounds, node, x, y, best):
     half_x, half_y = 0.5 * (boxes[node, 2] - boxes[node, 0]), 0.5 * (boxes[node, 3] - boxes[node, 1])
     from_x, from_y = boxes[node, 0] + half_x - x, boxes[node, 1] + half_y - y
     return block_may_improve(kind, coefficient, bounds, node, from_x, from_y, half_x, half_y, best)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _on_cell(kind, coefficient, cells, t, x, y, best):
     return on_triangle(
         kind, coefficient,

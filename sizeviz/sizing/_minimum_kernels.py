@@ -9,13 +9,13 @@ import numpy as np
 from numba import njit
 
 from sizeviz.sizing._kernels import size_at
-from sizeviz.sizing._tree_kernels import FANOUT
+from sizeviz.sizing._tree_kernels import FANOUT, uncounted
 
 SMALL_BLOCK = 2
 """Level of the blocks (4 x 4 cells) whose nodes are looked at one by one."""
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def element_min(searcher, xy):
     """Return the least size over a quadrilateral.
 
@@ -32,7 +32,7 @@ def element_min(searcher, xy):
     )  # fmt: skip
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def quad_min(searcher, x0, y0, x1, y1, x2, y2, x3, y3):
     """Return the least size over the quadrilateral with these corners; as ``element_min``, without an array."""
     quad = (x0, y0, x1, y1, x2, y2, x3, y3)
@@ -40,7 +40,7 @@ def quad_min(searcher, x0, y0, x1, y1, x2, y2, x3, y3):
     sampler = (grid, sizes, searcher[2], searcher[3], searcher[4])
     best, hint = np.inf, 0
     if grid[4] == 0.0:
-        best, hint = _least_on_triangles(searcher[2], searcher[3], searcher[4], searcher[6], quad)
+        best, hint = _least_on_triangles(searcher[2], searcher[3], searcher[5], searcher[6], quad)
     for k in range(4):
         size, hint = size_at(sampler, quad[2 * k], quad[2 * k + 1], hint)
         best = min(best, size)
@@ -49,7 +49,7 @@ def quad_min(searcher, x0, y0, x1, y1, x2, y2, x3, y3):
     return best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def elements_min(searcher, points, quads, out, start, stop):
     """Fill ``out[start:stop]`` with the least size over each quadrilateral."""
     for q in range(start, stop):
@@ -61,7 +61,7 @@ def elements_min(searcher, points, quads, out, start, stop):
         )  # fmt: skip
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _box_of(quad):
     return (
         min(min(quad[0], quad[2]), min(quad[4], quad[6])),
@@ -71,7 +71,7 @@ def _box_of(quad):
     )
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _holds(quad, x, y):
     """Return whether a quadrilateral holds a point, by counting crossings."""
     inside = False
@@ -85,34 +85,31 @@ def _holds(quad, x, y):
     return inside
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _least_on_grid(sampler, shapes, lowest, quad, best):
     """Return the least of ``best``, of the nodes inside, and of where edges cross the lines of the grid."""
     grid = sampler[0]
     x0, y0, x1, y1 = _box_of(quad)
     cells_x, cells_y = int(grid[4]) - 1, int(grid[5]) - 1
-    left = min(max(int(math.floor((x0 - grid[0]) / grid[2])), 0), cells_x - 1)
-    right = min(max(int(math.floor((x1 - grid[0]) / grid[2])), 0), cells_x - 1)
-    lower = min(max(int(math.floor((y0 - grid[1]) / grid[3])), 0), cells_y - 1)
-    upper = min(max(int(math.floor((y1 - grid[1]) / grid[3])), 0), cells_y - 1)
+    left = min(max(math.floor((x0 - grid[0]) / grid[2]), 0), cells_x - 1)
+    right = min(max(math.floor((x1 - grid[0]) / grid[2]), 0), cells_x - 1)
+    lower = min(max(math.floor((y0 - grid[1]) / grid[3]), 0), cells_y - 1)
+    upper = min(max(math.floor((y1 - grid[1]) / grid[3]), 0), cells_y - 1)
     if left == right and lower == upper and lowest[lower * cells_x + left] >= best:
         return best
     best = _least_of_nodes(grid, sampler[1], shapes, lowest, quad, left, lower, right, upper, best)
     for k in range(4):
-        best = _least_along(
-            sampler, quad[2 * k], quad[2 * k + 1], quad[(2 * k + 2) % 8], quad[(2 * k + 3) % 8], best
-        )
+        best = _least_along(sampler, quad[2 * k], quad[2 * k + 1], quad[(2 * k + 2) % 8], quad[(2 * k + 3) % 8], best)
     return best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _least_of_nodes(grid, sizes, shapes, lowest, quad, left, lower, right, upper, best):
     """Return the least of ``best`` and the nodes inside a quadrilateral that lies in a range of cells."""
     extent = max(right - left, upper - lower)
     level = min(SMALL_BLOCK, len(shapes) - 1)
     while level < len(shapes) - 1 and (extent >> level) > 3:
         level += 1
-    stack = np.empty((64 + 4 * len(shapes), 3), dtype=np.int64) if level > SMALL_BLOCK else np.empty((0, 3), np.int64)
     for row in range(lower >> level, (upper >> level) + 1):
         for column in range(left >> level, (right >> level) + 1):
             if lowest[shapes[level, 2] + row * shapes[level, 1] + column] >= best:
@@ -120,14 +117,15 @@ def _least_of_nodes(grid, sizes, shapes, lowest, quad, left, lower, right, upper
             if level <= SMALL_BLOCK:
                 best = _least_in_block(grid, sizes, quad, level, row, column, left, lower, right, upper, best)
             else:
-                stack[0, 0], stack[0, 1], stack[0, 2] = level, row, column
-                best = _descend(grid, sizes, shapes, lowest, quad, left, lower, right, upper, stack, best)
+                best = _descend(grid, sizes, shapes, lowest, quad, level, row, column, left, lower, right, upper, best)
     return best
 
 
-@njit(nogil=True, cache=True)
-def _descend(grid, sizes, shapes, lowest, quad, left, lower, right, upper, stack, best):
-    """Look into one large block, the first on the stack, through its quarters."""
+@njit(nogil=True, cache=True, _nrt=True)
+def _descend(grid, sizes, shapes, lowest, quad, level, row, column, left, lower, right, upper, best):
+    """Look into one large block through its quarters."""
+    stack = np.empty((4 * len(shapes), 3), dtype=np.int64)
+    stack[0, 0], stack[0, 1], stack[0, 2] = level, row, column
     top = 1
     while top > 0:
         top -= 1
@@ -145,7 +143,7 @@ def _descend(grid, sizes, shapes, lowest, quad, left, lower, right, upper, stack
     return best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _least_in_block(grid, sizes, quad, level, row, column, left, lower, right, upper, best):
     """Return the least of ``best`` and a small block's nodes inside the quadrilateral."""
     nx = int(grid[4])
@@ -157,7 +155,7 @@ def _least_in_block(grid, sizes, quad, level, row, column, left, lower, right, u
     return best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _least_along(sampler, ax, ay, bx, by, best):
     """Return the least of ``best`` and the sizes where a segment crosses grid lines and diagonals."""
     grid = sampler[0]
@@ -169,11 +167,11 @@ def _least_along(sampler, ax, ay, bx, by, best):
     return _least_at_crossings(sampler, ax, ay, bx, by, u0 - v0, u1 - v1, 1 - ny, nx - 1, best)
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _least_at_crossings(sampler, ax, ay, bx, by, start, stop, first, last, best):
     """Return the least of ``best`` and the sizes where a coordinate that runs from start to stop is an integer."""
     low, high = min(start, stop), max(start, stop)
-    for k in range(max(int(math.ceil(low)), first), min(int(math.floor(high)), last) + 1):
+    for k in range(max(math.ceil(low), first), min(math.floor(high), last) + 1):
         if stop != start:
             s = (k - start) / (stop - start)
             size, _ = size_at(sampler, ax + s * (bx - ax), ay + s * (by - ay), 0)
@@ -181,35 +179,36 @@ def _least_at_crossings(sampler, ax, ay, bx, by, start, stop, first, last, best)
     return best
 
 
-@njit(nogil=True, cache=True)
-def _least_on_triangles(cells, boxes, children, lowest, quad):
-    """Return the least size over a quadrilateral's part inside the background, and a triangle that it meets."""
-    n_leaves = (len(cells) + FANOUT - 1) // FANOUT
+@uncounted
+def _least_on_triangles(cells, boxes, shapes, lowest, quad):
+    """Return the least size over a quadrilateral's part inside the background, and a triangle that it meets.
+
+    The tree is walked depth first without a stack: node k of a level has the nodes 4 k to 4 k + 3 of the level below.
+    """
     x0, y0, x1, y1 = _box_of(quad)
-    stack = np.empty(96, dtype=np.int64)
-    stack[0] = len(children) - 1
-    top, best, met = 1, np.inf, 0
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        if lowest[node] >= best:
-            continue
-        for child in range(children[node, 0], children[node, 1]):
-            if node < n_leaves:
-                lower = _least_on_one(cells, child, quad, x0, y0, x1, y1, best)
+    level, k, best, met = len(shapes) - 1, 0, np.inf, 0
+    while True:
+        node = shapes[level, 2] + k
+        if (
+            lowest[node] < best
+            and boxes[node, 0] <= x1 and boxes[node, 2] >= x0
+            and boxes[node, 1] <= y1 and boxes[node, 3] >= y0
+        ):  # fmt: skip
+            if level > 0:
+                level, k = level - 1, FANOUT * k
+                continue
+            for t in range(FANOUT * k, min(FANOUT * k + FANOUT, len(cells))):
+                lower = _least_on_one(cells, t, quad, x0, y0, x1, y1, best)
                 if lower < best:
-                    best, met = lower, child
-            elif (
-                lowest[child] < best
-                and boxes[child, 0] <= x1 and boxes[child, 2] >= x0
-                and boxes[child, 1] <= y1 and boxes[child, 3] >= y0
-            ):  # fmt: skip
-                stack[top] = child
-                top += 1
-    return best, met
+                    best, met = lower, t
+        while k % FANOUT == FANOUT - 1 or k + 1 == shapes[level, 0]:
+            if level == len(shapes) - 1:
+                return best, met
+            level, k = level + 1, k // FANOUT
+        k += 1
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _least_on_one(cells, t, quad, x0, y0, x1, y1, best):
     """Return the least of ``best`` and the sizes of triangle ``t`` over its part in the quadrilateral."""
     if min(cells[t, 6], cells[t, 7], cells[t, 8]) >= best:
@@ -227,7 +226,7 @@ def _least_on_one(cells, t, quad, x0, y0, x1, y1, best):
     return best
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def _least_on_segment(cells, t, px, py, qx, qy, best):
     """Return the least of ``best`` and the sizes of triangle ``t`` along a segment, clipped by its three edges."""
     enter, leave = 0.0, 1.0

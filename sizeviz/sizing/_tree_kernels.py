@@ -3,6 +3,14 @@
 import numpy as np
 from numba import njit
 
+uncounted = njit(nogil=True, cache=True, _nrt=False)
+"""``njit`` for small functions that allocate nothing.
+
+Numba counts references to arrays that are taken out of a tuple or handed on, with atomic operations: threads that ask
+one field then wait for each other at every query. Without its run-time (``_nrt``) there is nothing to count, nor to
+allocate with.
+"""
+
 FANOUT = 4
 """Triangles in a leaf, and children of an inner node."""
 
@@ -111,7 +119,7 @@ def bound_sizes(sizes, triangles, children, n_leaves):
     return lowest
 
 
-@njit(nogil=True, cache=True)
+@uncounted
 def box_distance2(boxes, node, x, y):
     """Return the squared distance from a point to a node's box."""
     dx = max(boxes[node, 0] - x, 0.0, x - boxes[node, 2])

@@ -73,14 +73,15 @@ class SizeField:
         Returns
         -------
         tuple
-            The sampler's five arrays, then ``(shapes, lowest)``: the levels of a grid's pyramid (empty on a
-            triangulation) and the least size of each of its blocks, or under each node of the tree.
+            The sampler's five arrays, then ``(shapes, lowest)``: the levels of a grid's pyramid or of the tree, and
+            the least size of each block or under each node of the tree.
         """
         from sizeviz.sizing.pyramid import block_minima, pyramid
 
         grid = self.background.grid
         if grid is None:
-            return *self.sampler, read_only(np.empty((0, 3), dtype=np.int64)), self.background.tree.lowest(self.sizes)
+            tree = self.background.tree
+            return *self.sampler, tree.shapes, tree.lowest(self.sizes)
         return *self.sampler, pyramid(grid), block_minima(grid, self.sizes)
 
     def at(self, points: ArrayLike) -> NDArray[np.float64]:

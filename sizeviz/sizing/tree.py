@@ -43,6 +43,15 @@ class TriangleTree:
         """Number of leaves; node numbers below it are leaves."""
         return -(-len(self.triangles) // FANOUT)
 
+    @property
+    def shapes(self) -> NDArray[np.int64]:
+        """Number of nodes, 1, and first node of each level, ``(L, 3)``, leaves first: the columns of ``pyramid``."""
+        counts = [self.n_leaves]
+        while counts[-1] > 1:
+            counts.append(-(-counts[-1] // FANOUT))
+        first = np.concatenate([[0], np.cumsum(counts[:-1])])
+        return read_only(np.column_stack([counts, np.ones(len(counts)), first]).astype(np.int64))
+
     def cells(self, points: NDArray[np.float64], sizes: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return all that interpolation needs, triangle by triangle, so that a query touches one row.
 
