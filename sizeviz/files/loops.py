@@ -1,27 +1,35 @@
-"""Domains as lists of points: one x, y pair a line, loops parted by an empty line, the outer loop first."""
+"""Domains as lists of points: one x, y pair a line, loops parted by an empty line."""
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from sizeviz.errors import InputError
+from sizeviz.files.guard import check_nodes, one_line
+from sizeviz.files.outlines import MAX_OUTLINE, checked_coordinates
 from sizeviz.geometry import Domain
+from sizeviz.geometry.domain import signed_area
 from sizeviz.geometry.outline import require_simple
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sizeviz.files.options import ReadOptions
+
 _BETWEEN = re.compile(r"[\s,;]+")
+_HEADING = re.compile(r"[^\d]*")
 
 
-def read_domain(path: Path) -> Domain:
-    """Return the domain in a text file of loops.
+def parse(data: bytes, path: Path, options: ReadOptions) -> Domain:
+    """Return the domain in a text of loops.
 
     A line holds x and y, parted by a comma, a semicolon or blanks; ``#`` begins a comment; one heading line in words
-    may come first. An empty line ends a loop; the first loop is the outer one, the others are holes.
+    may come first. An empty line ends a loop; the largest loop is the outer one, the others are holes.
 
     Raises
     ------
@@ -29,18 +37,19 @@ def read_domain(path: Path) -> Domain:
         If a line does not hold two finite numbers, or the loops cross themselves or each other.
     """
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError as problem:
-        raise InputError(f"{path}: is not a text file; write one x, y pair a line") from problem
-    loops = _loops(lines, path)
+        lines = data.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise InputError("it is not a text file; write one x, y pair a line") from None
+    check_nodes(len(lines), "lines", 2 * MAX_OUTLINE)
+    loops = sorted(_loops(lines), key=lambda loop: -abs(signed_area(loop)))
     if not loops:
-        raise InputError(f"{path}: holds no point; write one x, y pair a line")
-    domain = Domain(loops[0], tuple(loops[1:]), label=path.name)
+        raise InputError("it holds no point; write one x, y pair a line")
+    domain = Domain(loops[0], tuple(loops[1:]), label=one_line(path.name))
     require_simple(domain)
     return domain
 
 
-def _loops(lines: list[str], path: Path) -> list[np.ndarray[tuple[int, int], np.dtype[np.float64]]]:
+def _loops(lines: list[str]) -> list[NDArray[np.float64]]:
     loops: list[list[tuple[float, float]]] = [[]]
     heading_allowed = True
     for number, line in enumerate(lines, 1):
@@ -52,10 +61,10 @@ def _loops(lines: list[str], path: Path) -> list[np.ndarray[tuple[int, int], np.
         point = _point(text)
         if point is not None:
             loops[-1].append(point)
-        elif not (heading_allowed and re.fullmatch(r"[^\d]*", text)):
-            raise InputError(f"{path}: line {number} is {text!r}; it must hold two finite numbers, x and y")
+        elif not (heading_allowed and _HEADING.fullmatch(text)):
+            raise InputError(f"line {number} is {one_line(text, 60)!r}; it must hold two finite numbers, x and y")
         heading_allowed = False
-    return [np.array(loop) for loop in loops if loop]
+    return [checked_coordinates(loop, "a loop") for loop in loops if loop]
 
 
 def _point(text: str) -> tuple[float, float] | None:
@@ -66,4 +75,4 @@ def _point(text: str) -> tuple[float, float] | None:
         x, y = float(words[0]), float(words[1])
     except ValueError:
         return None
-    return (x, y) if np.isfinite(x) and np.isfinite(y) else None
+    return (x, y) if math.isfinite(x) and math.isfinite(y) else None

@@ -48,7 +48,7 @@ def test_a_triangulation_cannot_be_an_array(tmp_path: Path) -> None:
     [
         (b"", "empty"),
         (b"junk", "not a NumPy file"),
-        (b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', 'fortran_order': False, 'shape': (9, 9)", "not a NumPy file"),
+        (b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', 'fortran_order': False, 'shape': (9, 9)", "header.*cut or corrupt"),
     ],
 )
 def test_junk_is_refused(tmp_path: Path, content: bytes, words: str) -> None:
@@ -71,14 +71,14 @@ def test_arrays_of_another_kind_are_refused(tmp_path: Path, sizes: np.ndarray) -
 
 def test_pickled_objects_are_never_loaded(tmp_path: Path) -> None:
     np.save(tmp_path / "f.npy", np.array([[{}, 1], [2, 3]], dtype=object))
-    with pytest.raises(InputError, match="not a NumPy file"):
+    with pytest.raises(InputError, match="Python objects, which are never read"):
         read_field(tmp_path / "f.npy")
 
 
 @pytest.mark.parametrize("x", [[0.0, 1.0, 3.0], [0.0, 1.0], [2.0, 1.0, 0.0], [0.0, np.nan, 2.0]])
 def test_axes_must_grow_in_equal_steps(tmp_path: Path, x: list[float]) -> None:
     np.savez(tmp_path / "f.npz", sizes=np.ones((2, 3)), x=np.array(x))
-    with pytest.raises(InputError, match="x: must"):
+    with pytest.raises(InputError, match="x must"):
         read_field(tmp_path / "f.npz")
 
 

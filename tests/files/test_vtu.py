@@ -100,13 +100,16 @@ def test_quads_with_sizes_are_a_field_too(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (lambda text: text[: len(text) // 2], "corrupt"),
-        (lambda text: text.replace("UnstructuredGrid", "PolyData"), "not an unstructured grid"),
-        (lambda text: text.replace('Name="types"', 'Name="kinds"'), "corrupt"),
-        (lambda text: text.replace('type="Float64"', 'type="Text"'), "corrupt"),
-        (lambda text: text.replace("PointData", "FieldData"), "no point array of sizes"),
+        (lambda text: text[: len(text) // 2], "not well-formed"),
+        (lambda text: text.replace("UnstructuredGrid", "PolyData"), "no triangle or quadrilateral"),
+        (lambda text: text.replace("UnstructuredGrid", "RectilinearGrid"), "holds a RectilinearGrid"),
+        (lambda text: text.replace("<Piece ", "<Pieces ").replace("</Piece>", "</Pieces>"), "has 0 pieces"),
+        (lambda text: text.replace('format="binary">', 'format="binary">////', 1), "cut or corrupt"),
+        (lambda text: text.replace('Name="types"', 'Name="kinds"'), "no types"),
+        (lambda text: text.replace('type="Float64"', 'type="Text"'), "type 'Text'"),
+        (lambda text: text.replace("PointData", "FieldData"), "no array of sizes"),
         (lambda text: '<!DOCTYPE x [<!ENTITY a "b">]>' + text.removeprefix('<?xml version="1.0"?>'), "entities"),
-        (lambda text: "no XML at all", "corrupt"),
+        (lambda text: "no XML at all", "not well-formed"),
     ],
 )
 def test_damaged_files_are_refused_by_name(tmp_path: Path, damage, words: str) -> None:
@@ -120,7 +123,7 @@ def test_damaged_files_are_refused_by_name(tmp_path: Path, damage, words: str) -
 
 def test_a_mesh_is_no_mesh_of_triangles(tmp_path: Path) -> None:
     path = write_field(tmp_path / "f.vtu", small_field())
-    with pytest.raises(InputError, match="other than quadrilaterals"):
+    with pytest.raises(InputError, match="holds 12 triangle; a mesh is read from plane linear quadrilaterals only"):
         read_mesh(path)
 
 
