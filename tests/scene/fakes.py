@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +16,11 @@ class FakeReport:
     ratios: dict[str, np.ndarray]
     sizes: dict[str, np.ndarray]
     quality: np.ndarray
-    extra: dict[str, object] = field(default_factory=dict)
+    n_quads: int = 0
+    n_nodes: int = 0
+    n_inverted: int = 0
+    ideal_quads: float | None = None
+    irregular_percent: float = 0.0
 
 
 def lattice(n: int, bend: float = 0.0, seed: int = 0) -> QuadMesh:
@@ -44,7 +48,8 @@ def fake_report(mesh: QuadMesh, asked: np.ndarray) -> FakeReport:
     sides = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
     sizes = {"mean-edge": sides.mean(axis=1), "sqrt-area": np.sqrt(mesh.areas), "max-edge": sides.max(axis=1)}
     quality = mesh.areas / (sides**2).mean(axis=1)
-    return FakeReport({name: size / asked for name, size in sizes.items()}, sizes, quality)
+    ratios = {name: size / asked for name, size in sizes.items()}
+    return FakeReport(ratios, sizes, quality, mesh.n_quads, mesh.n_points, 0, 0.9 * mesh.n_quads, 4.0)
 
 
 def grid_field(nodes: int = 65, floor: float = 0.01, label: str = "ring") -> SizeField:

@@ -1,0 +1,121 @@
+"""Everything the window can do, by name: one list feeds menus, toolbar, shortcuts, overlay and command palette."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from qtpy.QtGui import QKeySequence
+
+from sizeviz.app.qt import QAction
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from qtpy.QtWidgets import QWidget
+
+
+@dataclass(frozen=True)
+class Command:
+    """One thing to do.
+
+    Parameters
+    ----------
+    name : str
+        Unique name.
+    title : str
+        Words in menus and palette.
+    group : str
+        Menu it belongs to.
+    shortcut : str
+        Keys, empty for none; several alternatives are separated by a blank.
+    checkable : bool
+        Whether it is a switch.
+    """
+
+    name: str
+    title: str
+    group: str
+    shortcut: str = ""
+    checkable: bool = False
+
+
+COMMANDS: tuple[Command, ...] = (
+    Command("open", "Open file…", "File", "Ctrl+O"),
+    Command("canvas", "New blank canvas", "File", "Ctrl+N"),
+    Command("save-picture", "Save a picture of this view…", "File", "Ctrl+S"),
+    Command("save-comparison", "Save the comparison picture…", "File", "Ctrl+Shift+S"),
+    Command("quit", "Quit", "File", "Ctrl+Q"),
+    Command("undo", "Undo", "Edit", "Ctrl+Z"),
+    Command("redo", "Redo", "Edit", "Ctrl+Shift+Z Ctrl+Y"),
+    Command("apply", "Run what is stale", "Edit", "F5"),
+    Command("cancel", "Cancel the run", "Edit", "Ctrl+."),
+    Command("paint", "Paint on the field", "Paint", "B", True),
+    Command("brush-smaller", "Smaller brush", "Paint", "["),
+    Command("brush-larger", "Larger brush", "Paint", "]"),
+    Command("brush-set", "Brush: set size", "Paint", "Alt+1"),
+    Command("brush-multiply", "Brush: multiply", "Paint", "Alt+2"),
+    Command("brush-at-most", "Brush: at most", "Paint", "Alt+3"),
+    Command("brush-smooth", "Brush: smooth", "Paint", "Alt+4"),
+    Command("brush-erase", "Brush: erase to original", "Paint", "Alt+5"),
+    Command("panes-1", "One pane", "View", "Ctrl+1"),
+    Command("panes-2", "Two panes", "View", "Ctrl+2"),
+    Command("panes-3", "Three panes", "View", "Ctrl+3"),
+    Command("panes-4", "Four panes", "View", "Ctrl+4"),
+    Command("link", "Link cameras", "View", "L", True),
+    Command("shared-range", "Share colour ranges", "View", "R", True),
+    Command("swap", "Swap the first two panes", "View", "X"),
+    Command("fit", "Fit to pane", "View", "F"),
+    Command("zoom-in", "Zoom in", "View", "+ ="),
+    Command("zoom-out", "Zoom out", "View", "-"),
+    Command("color-ratio", "Colour by R", "View", "1"),
+    Command("color-quality", "Colour by quality", "View", "2"),
+    Command("color-size", "Colour by element size", "View", "3"),
+    Command("color-prescribed", "Colour by prescribed size", "View", "4"),
+    Command("color-target", "Colour by target size", "View", "5"),
+    Command("worst-ratio", "Go to the worst R", "Inspect", "W"),
+    Command("worst-quality", "Go to the worst quality", "Inspect", "Q"),
+    Command("unpin", "Let go of the pinned element", "Inspect", "P"),
+    Command("copy-table", "Copy the table as Markdown", "Inspect", "Ctrl+Shift+C"),
+    Command("palette", "Command palette…", "Help", "Ctrl+K Ctrl+Shift+P"),
+    Command("shortcuts", "Keyboard shortcuts", "Help", "? Shift+?"),
+    Command("theme", "Dark theme", "Help", "Ctrl+D", True),
+    Command("log", "Show the log", "Help", ""),
+    Command("about", "About sizeviz", "Help", ""),
+)
+
+
+class Actions:
+    """The commands as Qt actions of one window.
+
+    Parameters
+    ----------
+    window : QWidget
+        Whose shortcuts they are.
+    """
+
+    def __init__(self, window: QWidget) -> None:
+        self._actions: dict[str, QAction] = {}
+        for command in COMMANDS:
+            action = QAction(command.title, window)
+            action.setCheckable(command.checkable)
+            if command.shortcut:
+                action.setShortcuts([QKeySequence(keys) for keys in command.shortcut.split()])
+                shown = action.shortcuts()[0].toString(QKeySequence.SequenceFormat.NativeText)
+                action.setToolTip(f"{command.title} ({shown})")
+            window.addAction(action)
+            self._actions[command.name] = action
+
+    def __getitem__(self, name: str) -> QAction:
+        return self._actions[name]
+
+    def __iter__(self) -> Iterator[tuple[Command, QAction]]:
+        return ((command, self._actions[command.name]) for command in COMMANDS)
+
+    def on(self, name: str, call: Callable[..., object]) -> None:
+        """Say what a command does; switches are told their new state."""
+        action = self._actions[name]
+        if action.isCheckable():
+            action.toggled.connect(lambda on: call(on))
+        else:
+            action.triggered.connect(lambda checked=False: call())

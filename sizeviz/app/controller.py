@@ -1,0 +1,394 @@
+"""Where intents go: the one place that changes the study, starts work and decides what is stale.
+
+Widgets emit intents and show what they are told; this class holds no widget and needs no OpenGL.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+from qtpy.QtCore import QObject, QTimer, Signal
+
+from sizeviz.app.brush.live import LiveStroke, covers_nothing
+from sizeviz.app.engine import LIVE_NODES, Engine, Preview, with_field
+from sizeviz.app.inspect.locate import ElementLocator
+from sizeviz.app.jobs import Failure, Job, JobRunner
+from sizeviz.app.store import StudyStore
+from sizeviz.errors import SizevizError
+from sizeviz.scene.subject import METHOD_TITLES, Subject, subject_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sizeviz.geometry import QuadMesh
+    from sizeviz.sizing import SizeField
+    from sizeviz.sources import Source
+    from sizeviz.sources.painting import Brush, StrokeShape
+    from sizeviz.study import Study, StudyOptions
+
+AUTO_SECONDS = 3.0
+"""Studies whose last run took no longer than this are run again by themselves after every change."""
+
+MERGE_SECONDS = 1.5
+"""Changes of one control that follow each other faster than this are one undo step."""
+
+LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Notice:
+    """A message that asks for no answer: level 'info', 'warning' or 'error', a line, details to copy."""
+
+    level: str
+    text: str
+    details: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Displayed:
+    """What a pane shows of a method: the newest results, or the last good ones, marked stale."""
+
+    subject: Subject
+    stale: bool
+
+
+class Controller(QObject):
+    """Turns intents into studies.
+
+    Parameters
+    ----------
+    engine : Engine
+        The pipeline.
+    parent : QObject, optional
+        Owner.
+
+    Signals
+    -------
+    study_changed(Study or None, Study)
+        The study was replaced; old and new.
+    preview_changed()
+        The brush shows something else, or nothing any more.
+    progressed(float, str, float)
+        Overall fraction, words, seconds left (negative while unknown).
+    busy_changed(bool)
+        Work began or ended.
+    noticed(Notice)
+        Something to tell.
+    opened(str)
+        A source was opened, by what name it can be opened again.
+    settled()
+        Every wanted method of the current study is complete.
+    """
+
+    study_changed = Signal(object, object)
+    preview_changed = Signal()
+    progressed = Signal(float, str, float)
+    busy_changed = Signal(bool)
+    noticed = Signal(object)
+    opened = Signal(str)
+    settled = Signal()
+
+    def __init__(self, engine: Engine, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.engine = engine
+        self.store = StudyStore(self)
+        self.jobs = JobRunner(self)
+        self.wanted: tuple[str, ...] = ("gradient-limiting", "size-preserving")
+        self.automatic = True
+        self.stroke: LiveStroke | None = None
+        self.preview: Preview | None = None
+        self._last_good: dict[str, Subject] = {}
+        self._locators: WeakKeyDictionary[QuadMesh, ElementLocator] = WeakKeyDictionary()
+        self._originals: WeakKeyDictionary[Source, SizeField] = WeakKeyDictionary()
+        self._last_edit = ("", 0.0, 0)
+        self._last_seconds: dict[str, float] = {}
+        self._preview_due = False
+        self._batch = 0
+        self.store.changed.connect(self._on_changed)
+        self.jobs.started.connect(lambda job: self.busy_changed.emit(True))
+        self.jobs.idle.connect(lambda: self.busy_changed.emit(False))
+        self.jobs.failed.connect(self._on_failed)
+        self.jobs.progressed.connect(self._on_progress)
+
+    # -- what there is ---------------------------------------------------------------------------------------------
+
+    @property
+    def study(self) -> Study | None:
+        """The current study."""
+        return self.store.study
+
+    def displayed(self, method: str) -> Displayed:
+        """Return what to show of a method now, the brush's preview included."""
+        study = self.study
+        if study is None:
+            return Displayed(Subject(), stale=False)
+        subject = subject_of(study, method)
+        stale = False
+        if subject.report is None:
+            last = self._last_good.get(method)
+            if last is not None and last.domain is subject.domain:
+                stale = True
+                subject = replace(
+                    subject,
+                    mesh=last.mesh,
+                    report=last.report,
+                    detail=last.detail,
+                    target=subject.target or last.target,
+                )
+        if self.preview is not None:
+            target = self.preview.targets.get(method, subject.target)
+            subject = replace(subject, prescribed=self.preview.field, target=target)
+            stale = subject.mesh is not None
+        return Displayed(subject, stale)
+
+    def missing(self) -> tuple[str, ...]:
+        """Return the wanted methods that the current study has no complete run of."""
+        study = self.study
+        if study is None:
+            return ()
+        done = {name for name, run in study.runs.items() if run.is_complete}
+        return tuple(name for name in self.wanted if name not in done)
+
+    def locator(self, mesh: QuadMesh) -> ElementLocator:
+        """Return what finds a mesh's element at a point; the worker has usually built it already."""
+        if mesh not in self._locators:
+            self._locators[mesh] = ElementLocator(mesh)
+        return self._locators[mesh]
+
+    def is_cheap(self) -> bool:
+        """Return whether a change may start a run by itself."""
+        return self.automatic and sum(self._last_seconds.values()) <= AUTO_SECONDS
+
+    # -- intents: sources and options ------------------------------------------------------------------------------
+
+    def open_source(self, spec: str) -> None:
+        """Open an example, a file or a formula, then run it."""
+
+        def opened(source: Source) -> None:
+            self.set_source(source, f"Open {source.label}")
+            self.opened.emit(spec)
+
+        self.jobs.submit(Job(f"opening {spec}", lambda monitor: self.engine.load(spec, monitor), opened))
+
+    def open_canvas(self, nodes: int, size: float) -> None:
+        """Start from a blank canvas."""
+        self._guarded(lambda: self.set_source(self.engine.canvas(nodes, size), "Blank canvas"))
+
+    def set_source(self, source: Source, words: str) -> None:
+        """Study another source with the same options; it is run at once."""
+        from sizeviz.study import Study
+
+        study = self.study
+        self._last_seconds.clear()
+        options = self.engine.default_options() if study is None else study.options
+        self.store.commit(Study(source, options), words)
+        self.apply()
+
+    def set_options(self, options: StudyOptions, words: str, key: str = "") -> None:
+        """Ask for something else of the pipeline; results that it changes become stale."""
+        study = self.study
+        if study is None or options == study.options:
+            return
+        self.store.commit(study.with_options(options), words, self._merge_key(key))
+        self._after_edit()
+
+    def change(self, make: Callable[[StudyOptions], StudyOptions], words: str, key: str = "") -> None:
+        """Change the options by a function; values that cannot be are answered by a notice."""
+        study = self.study
+        if study is not None:
+            current = study.options
+            self._guarded(lambda: self.set_options(make(current), words, key))
+
+    def set_wanted(self, methods: tuple[str, ...]) -> None:
+        """Say which methods the panes need; new ones are run."""
+        if methods != self.wanted:
+            self.wanted = methods
+            self._after_edit()
+
+    def apply(self) -> None:
+        """Run whatever is missing, however long it takes."""
+        missing = self.missing()
+        self._batch = len(missing)
+        if missing:
+            self._run_next(missing[0])
+
+    def cancel(self) -> None:
+        """Stop the work under way; what was there stays."""
+        self.jobs.cancel()
+
+    def undo(self) -> None:
+        """Go one step back."""
+        self.abort_stroke()
+        self.store.stack.undo()
+        self._after_edit()
+
+    def redo(self) -> None:
+        """Go one step forward again."""
+        self.abort_stroke()
+        self.store.stack.redo()
+        self._after_edit()
+
+    # -- intents: painting -----------------------------------------------------------------------------------------
+
+    def begin_stroke(self, brush: Brush, shape: StrokeShape, x: float, y: float) -> None:
+        """Put the brush down."""
+        study = self.study
+        if study is None:
+            return
+        source = study.source
+        self.stroke = LiveStroke(source.field, brush, shape, self._originals.get(source, source.field))
+        self.extend_stroke(x, y)
+
+    def extend_stroke(self, x: float, y: float) -> None:
+        """Move the brush."""
+        if self.stroke is not None:
+            self.stroke.extend(x, y)
+            self._show_stroke()
+
+    def reshape_stroke(self, path: list[tuple[float, float]]) -> None:
+        """Give a line or polygon under way another path."""
+        if self.stroke is not None and path:
+            self.stroke.replace_path(path)
+            self._show_stroke()
+
+    def end_stroke(self) -> None:
+        """Lift the brush: the stroke becomes one undo step, and the mesh follows."""
+        study, live, self.stroke = self.study, self.stroke, None
+        if study is None or live is None:
+            return
+        self.preview = None
+        if covers_nothing(live.stroke, live.base):
+            self.preview_changed.emit()
+            return
+        source = with_field(study.source, live.field, int(study.source.provenance.get("strokes", 0)) + 1)
+        self._originals[source] = self._originals.get(study.source, study.source.field)
+        self.store.commit(study.with_source(source), f"Paint: {stroke_words(live.brush)}")
+        self.preview_changed.emit()
+        self._after_edit()
+
+    def abort_stroke(self) -> None:
+        """Drop the stroke under way; nothing was changed."""
+        if self.stroke is not None or self.preview is not None:
+            self.stroke = self.preview = None
+            self.preview_changed.emit()
+
+    # -- inside ----------------------------------------------------------------------------------------------------
+
+    def _show_stroke(self) -> None:
+        assert self.stroke is not None
+        targets = self.preview.targets if self.preview is not None else {}
+        self.preview = Preview(self.stroke.field, targets)
+        self.preview_changed.emit()
+        if len(self.preview.field.sizes) <= LIVE_NODES:
+            self._request_preview()
+
+    def _request_preview(self) -> None:
+        """Ask for the processed fields of the stroke; while one answer is awaited, only the next is remembered."""
+        running = self.jobs.running
+        if running is not None and running.title == "preview":
+            self._preview_due = True
+            return
+        self._preview_due = False
+        preview, study = self.preview, self.study
+        if preview is None or study is None:
+            return
+        field, options = preview.field, study.options
+
+        def show(targets: dict[str, SizeField]) -> None:
+            if self.stroke is None or self.preview is None:
+                return
+            self.preview = Preview(self.preview.field, targets)
+            self.preview_changed.emit()
+            if self._preview_due:
+                self._later(self._request_preview)
+
+        self.jobs.submit(Job("preview", lambda monitor: self.engine.targets(field, options, monitor), show))
+
+    def _run_next(self, method: str) -> None:
+        study = self.study
+        assert study is not None
+
+        def work(monitor: Any) -> tuple[Study, ElementLocator | None]:
+            result = self.engine.run(study, method, monitor)
+            mesh = result.runs[method].mesh
+            return result, None if mesh is None else ElementLocator(mesh)
+
+        def then(answer: tuple[Study, ElementLocator | None]) -> None:
+            result, locator = answer
+            if self.study is not study:
+                return  # its inputs are no longer the study's
+            run = result.runs[method]
+            if run.mesh is not None and locator is not None:
+                self._locators[run.mesh] = locator
+            self._last_seconds[method] = run.total_seconds
+            self.store.amend(result)
+            missing = self.missing()
+            if missing:
+                self._later(lambda: self._run_next(missing[0]) if self.study is result else None)
+            else:
+                self.settled.emit()
+
+        self.jobs.submit(Job(METHOD_TITLES.get(method, method), work, then))
+
+    def _after_edit(self) -> None:
+        """Run what a change made stale if that is cheap; otherwise stop work on what nobody wants any more."""
+        if not self.missing():
+            self.jobs.cancel()
+            return
+        if self.is_cheap():
+            self.apply()
+        else:
+            self.jobs.cancel()
+
+    def _later(self, call: Callable[[], object]) -> None:
+        QTimer.singleShot(0, call)
+
+    def _merge_key(self, key: str) -> str:
+        if not key:
+            return ""
+        last, when, gesture = self._last_edit
+        now = time.monotonic()
+        if key != last or now - when > MERGE_SECONDS:
+            gesture += 1
+        self._last_edit = (key, now, gesture)
+        return f"{key}#{gesture}"
+
+    def _guarded(self, call: Callable[[], object]) -> None:
+        try:
+            call()
+        except SizevizError as error:
+            self.noticed.emit(Notice("error", str(error)))
+
+    def _on_changed(self, old: Study | None, new: Study) -> None:
+        for method, run in new.runs.items():
+            if run.is_complete:
+                self._last_good[method] = subject_of(new, method)
+        self.study_changed.emit(old, new)
+
+    def _on_failed(self, job: Job, failure: Failure) -> None:
+        self.noticed.emit(Notice("error", failure.message, f"{job.title}\n\n{failure.details}"))
+
+    def _on_progress(self, fraction: float, message: str, left: float) -> None:
+        if self.jobs.running is not None and self.jobs.running.title == "preview":
+            return
+        waiting = len(self.missing())
+        if left >= 0 and waiting > 1:
+            left += (waiting - 1) * (sum(self._last_seconds.values()) or left / max(1.0 - fraction, 0.1))
+        done = max(self._batch - waiting, 0)
+        overall = (done + fraction) / (done + waiting) if waiting else fraction
+        self.progressed.emit(overall, message, left)
+
+
+def stroke_words(brush: Brush) -> str:
+    """Return a stroke in words, for the history."""
+    return {
+        "set": f"set {brush.value:.3g}",
+        "multiply": f"× {brush.value:.3g}",
+        "at-most": f"at most {brush.value:.3g}",
+        "smooth": "smooth",
+        "erase": "erase",
+    }[brush.mode]

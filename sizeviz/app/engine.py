@@ -1,0 +1,125 @@
+"""What the window asks of the rest of sizeviz: the same pipeline as the command line's, behind one small door.
+
+Everything heavy is imported inside the calls, on the worker, so that the window is there before numba is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol
+
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sizeviz.sizing import SizeField
+    from sizeviz.sources import Source
+    from sizeviz.study import Study, StudyOptions
+
+LIVE_NODES = 512 * 512 + 2 * 512 + 1
+"""Fields with at most so many nodes (513 x 513) are limited and preserved while the brush moves."""
+
+
+@dataclass(frozen=True)
+class Example:
+    """An entry of the gallery."""
+
+    name: str
+    title: str
+    words: str
+
+
+@dataclass(frozen=True, eq=False)
+class Preview:
+    """What the brush shows before it is lifted; ``targets`` by method, as far as they were computed."""
+
+    field: SizeField
+    targets: dict[str, SizeField]
+
+
+class Engine(Protocol):
+    """The pipeline as the window sees it."""
+
+    def examples(self) -> Sequence[Example]:
+        """Return the gallery."""
+
+    def load(self, spec: str, monitor: Monitor = SILENT) -> Source:
+        """Return an example, a file or a formula as a source."""
+
+    def canvas(self, nodes: int, size: float) -> Source:
+        """Return a blank canvas: one size everywhere on the unit square."""
+
+    def run(self, study: Study, method: str, monitor: Monitor = SILENT) -> Study:
+        """Return the study with one method complete."""
+
+    def targets(self, field: SizeField, options: StudyOptions, monitor: Monitor = SILENT) -> dict[str, SizeField]:
+        """Return the limited and the preserved field, by method."""
+
+    def default_options(self) -> StudyOptions:
+        """Return the options a new study starts from."""
+
+
+class PipelineEngine:
+    """The real pipeline."""
+
+    def examples(self) -> Sequence[Example]:
+        """Return the gallery of examples that every install can show."""
+        from sizeviz.sources import examples
+
+        return [Example(entry.name, entry.label, entry.description) for entry in examples()]
+
+    def load(self, spec: str, monitor: Monitor = SILENT) -> Source:
+        """Return an example, a file or ``expr:FORMULA`` as a source."""
+        from sizeviz.sources import load
+
+        monitor.step(0.0, f"reading {spec}")
+        return load(spec)
+
+    def canvas(self, nodes: int, size: float) -> Source:
+        """Return a blank canvas: one size everywhere on the unit square, ``nodes`` along each side."""
+        import numpy as np
+
+        from sizeviz.geometry import Domain
+        from sizeviz.sizing import BackgroundMesh, SizeField
+        from sizeviz.sources import Source
+
+        background = BackgroundMesh.unit_square_grid(nodes, nodes)
+        field = SizeField(background, np.full(nodes * nodes, size), "blank canvas")
+        return Source(
+            name="canvas",
+            label="Blank canvas",
+            domain=Domain.unit_square(),
+            field=field,
+            reference=field,
+            image=None,
+            provenance={"kind": "canvas", "nodes": nodes, "size": size},
+        )
+
+    def run(self, study: Study, method: str, monitor: Monitor = SILENT) -> Study:
+        """Return the study with one method complete, as the command line would run it."""
+        from sizeviz.study import run
+
+        return run(study, (method,), monitor)
+
+    def targets(self, field: SizeField, options: StudyOptions, monitor: Monitor = SILENT) -> dict[str, SizeField]:
+        """Return the limited and the preserved field, by method."""
+        from sizeviz.sizing import limited, preserved
+
+        asked = field if options.beta == 1.0 else field.with_sizes(options.beta * field.sizes)
+        first, second = SubMonitor(monitor, 0.0, 0.5), SubMonitor(monitor, 0.5, 1.0)
+        return {
+            "gradient-limiting": limited(asked, options.limit, threads=options.threads, monitor=first),
+            "size-preserving": preserved(field, options.preserve, threads=options.threads, monitor=second),
+        }
+
+    def default_options(self) -> StudyOptions:
+        """Return defaults with the comparable slope, epsilon = 1/alpha."""
+        from sizeviz.study import StudyOptions
+
+        return StudyOptions().with_comparable_slope()
+
+
+def with_field(source: Source, field: SizeField, strokes: int) -> Source:
+    """Return a source whose sizes were painted over; R is then judged against what was painted."""
+    return replace(source, field=field, reference=field, provenance={**source.provenance, "strokes": strokes})

@@ -1,0 +1,134 @@
+"""Hovering, pinning and going to elements."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import QObject, Signal
+
+from sizeviz.app.inspect.readout import reading
+from sizeviz.app.panes.surface import Mark
+
+if TYPE_CHECKING:
+    from qtpy.QtWidgets import QLabel
+
+    from sizeviz.app.controller import Controller
+    from sizeviz.app.inspect.judge import WorstPanel
+    from sizeviz.app.inspect.readout import Reading
+    from sizeviz.app.panes.board import PaneBoard
+    from sizeviz.app.panes.pane import Pane
+
+
+class Inspector(QObject):
+    """Shows what is under the cursor, and keeps one element pinned.
+
+    Parameters
+    ----------
+    controller : Controller
+        Whose meshes are looked at.
+    board : PaneBoard
+        The panes.
+    readout : QLabel
+        Where the words go.
+    worst : WorstPanel
+        The list that is linked with the view.
+    """
+
+    pinned = Signal(object)
+
+    def __init__(self, controller: Controller, board: PaneBoard, readout: QLabel, worst: WorstPanel) -> None:
+        super().__init__(board)
+        self._controller, self._board, self._readout, self._worst = controller, board, readout, worst
+        self.pin: tuple[str, int] | None = None
+        board.hovered.connect(self._hover)
+        board.left.connect(self._leave)
+        board.clicked.connect(self._click)
+        worst.chosen.connect(self.go_to)
+        controller.study_changed.connect(lambda old, new: self._after_change())
+
+    def read(self, pane: Pane, x: float, y: float) -> Reading:
+        """Return all that is known at a point of a pane."""
+        mesh = pane.subject.mesh
+        locator = None if mesh is None else self._controller.locator(mesh)
+        return reading(pane.subject, locator, pane.view.measure, x, y)
+
+    def go_to(self, method: str, element: int) -> None:
+        """Look at an element, and pin it."""
+        if self._board.go_to(method, element) is not None:
+            self.set_pin(method, element)
+
+    def go_to_worst(self, quantity: str) -> None:
+        """Look at the worst element of the active pane's method, by R or by quality."""
+        pane = self._board.active
+        values = pane.subject.element_values("ratio" if quantity == "ratio" else "quality", pane.view.measure)
+        if values is not None:
+            self.go_to(pane.view.method, int(values.argmax() if quantity == "ratio" else values.argmin()))
+
+    def set_pin(self, method: str, element: int | None) -> None:
+        """Pin an element of a method's mesh, or none."""
+        self.pin = None if element is None else (method, element)
+        self._draw_pin()
+        if element is not None:
+            self._worst.select(element)
+        self.pinned.emit(self.pin)
+
+    # -- inside ----------------------------------------------------------------------------------------------------
+
+    def _hover(self, pane: Pane, x: float, y: float) -> None:
+        seen = self.read(pane, x, y)
+        self._readout.setText("   " + seen.words())
+        glass, mesh = pane.surface.glass, pane.subject.mesh
+        if seen.element is None or mesh is None or pane.spec is None or not self._shows_elements(pane):
+            glass.marks.pop("hover", None)
+        else:
+            glass.marks["hover"] = Mark(mesh.points[mesh.quads[seen.element]])
+        glass.update()
+
+    def _leave(self) -> None:
+        self._readout.setText("")
+        for pane in self._board.panes:
+            if pane.surface.glass.marks.pop("hover", None) is not None:
+                pane.surface.glass.update()
+
+    def _click(self, pane: Pane, x: float, y: float) -> None:
+        if not self._shows_elements(pane):
+            return
+        element = self.read(pane, x, y).element
+        same = self.pin == (pane.view.method, element)
+        self.set_pin(pane.view.method, None if same else element)
+
+    def _draw_pin(self) -> None:
+        for pane in self._board.panes:
+            glass, mesh = pane.surface.glass, pane.subject.mesh
+            glass.marks.pop("pin", None)
+            if self.pin is not None and mesh is not None and self.pin[0] == pane.view.method:
+                element = self.pin[1]
+                if element < mesh.n_quads:
+                    corners = mesh.points[mesh.quads[element]]
+                    x, y = corners.mean(axis=0)
+                    glass.marks["pin"] = Mark(corners, _pin_words(self.read(pane, float(x), float(y)), element), True)
+            glass.update()
+
+    def _after_change(self) -> None:
+        """Let go of a pin whose mesh is gone."""
+        study = self._controller.study
+        if self.pin is not None and study is not None:
+            run = study.runs.get(self.pin[0])
+            pane = next((p for p in self._board.visible_panes if p.view.method == self.pin[0]), None)
+            if run is None or run.mesh is None or pane is None or pane.subject.mesh is not run.mesh:
+                self.pin = None
+                self.pinned.emit(None)
+        self._draw_pin()
+
+    @staticmethod
+    def _shows_elements(pane: Pane) -> bool:
+        return pane.view.color_by not in ("prescribed", "target")
+
+
+def _pin_words(seen: Reading, element: int) -> str:
+    parts = [f"element {element}"]
+    if seen.ratio is not None:
+        parts.append(f"R {seen.ratio:.3f}")
+    if seen.quality is not None:
+        parts.append(f"q {seen.quality:.3f}")
+    return "   ".join(parts)

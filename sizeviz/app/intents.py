@@ -1,0 +1,216 @@
+"""Which intent goes where: the connections between widgets and controller, and what each command does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import QFileDialog
+
+from sizeviz.app.controller import Notice
+from sizeviz.app.feedback import About
+from sizeviz.app.panes.board import Selection
+from sizeviz.app.qt import QShortcut
+from sizeviz.app.theme import DARK, LIGHT
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sizeviz.app.window import MainWindow
+    from sizeviz.study import Study
+
+CANVAS_NODES = 257
+CANVAS_SIZE = 0.05
+
+
+def connect_panels(window: MainWindow) -> None:
+    """Send every panel's intents to the controller, and every change back to the widgets."""
+    controller, board = window.controller, window.board
+    for source in (window.source, window.welcome):
+        source.open_requested.connect(controller.open_source)
+        source.file_requested.connect(lambda: open_file(window))
+    window.source.canvas_requested.connect(controller.open_canvas)
+    window.welcome.canvas_requested.connect(lambda: controller.open_canvas(CANVAS_NODES, CANVAS_SIZE))
+    for panel in (window.size_panel, window.mesh_panel, window.smooth_panel):
+        panel.changed.connect(controller.change)
+    judge = window.judge_panel
+    judge.apply_requested.connect(controller.apply)
+    judge.automatic_toggled.connect(lambda on: setattr(controller, "automatic", on))
+    judge.measure_chosen.connect(lambda measure: _set_measure(window, measure))
+    window.progress.cancel_requested.connect(controller.cancel)
+    controller.study_changed.connect(lambda old, new: _on_study(window, old, new))
+    controller.preview_changed.connect(board.refresh)
+    controller.busy_changed.connect(window.progress.show_busy)
+    controller.busy_changed.connect(lambda busy: window.show_state())
+    controller.progressed.connect(window.progress.show_progress)
+    controller.noticed.connect(window.toast.tell)
+    controller.opened.connect(window.settings.remember_source)
+    board.views_changed.connect(lambda: _on_views(window))
+    board.active_changed.connect(lambda pane: window.show_judgement())
+    window.statistics.copied.connect(lambda name: controller.noticed.emit(Notice("info", f"Table copied as {name}")))
+    for histogram in window.histograms:
+        histogram.selected.connect(lambda method, chosen: _select(window, method, chosen))
+    window.tool.active_changed.connect(lambda on: _on_tool(window, on))
+
+
+def connect_actions(window: MainWindow) -> None:
+    """Say what each command does."""
+    controller, board, on = window.controller, window.board, window.actions_.on
+    on("open", lambda: open_file(window))
+    on("canvas", lambda: controller.open_canvas(CANVAS_NODES, CANVAS_SIZE))
+    on("save-picture", lambda: save_picture(window))
+    on("save-comparison", lambda: save_comparison(window))
+    on("quit", window.close)
+    on("undo", controller.undo)
+    on("redo", controller.redo)
+    on("apply", controller.apply)
+    on("cancel", controller.cancel)
+    on("paint", window.tool.set_active)
+    on("brush-smaller", lambda: window.paint.step_radius(-1.0))
+    on("brush-larger", lambda: window.paint.step_radius(1.0))
+    for mode in window.paint.modes:
+        on(f"brush-{mode}", lambda mode=mode: window.paint.set_mode(mode))
+    for count in (1, 2, 3, 4):
+        on(f"panes-{count}", lambda count=count: board.set_count(count))
+    for name, state in (("link", board.linked), ("shared-range", board.shared_range), ("theme", window.theme.dark)):
+        window.actions_[name].setChecked(state)
+    on("link", board.set_linked)
+    on("shared-range", board.set_shared_range)
+    on("swap", board.swap)
+    on("fit", board.fit)
+    on("zoom-in", lambda: _zoom(window, 1.25))
+    on("zoom-out", lambda: _zoom(window, 0.8))
+    for quantity in ("ratio", "quality", "size", "prescribed", "target"):
+        on(f"color-{quantity}", lambda quantity=quantity: _color(window, quantity))
+    on("worst-ratio", lambda: window.inspector.go_to_worst("ratio"))
+    on("worst-quality", lambda: window.inspector.go_to_worst("quality"))
+    on("unpin", lambda: window.inspector.set_pin("", None))
+    on("copy-table", lambda: window.statistics.copy("Markdown"))
+    on("palette", window.palette_.open)
+    on("shortcuts", window.overlay.open)
+    on("theme", lambda dark: window.set_theme(DARK if dark else LIGHT))
+    on("log", lambda: window.tabs.setCurrentWidget(window.log))
+    on("about", lambda: About(window).open())
+    _connect_keys(window)
+
+
+def open_file(window: MainWindow) -> None:
+    """Ask for a file and open it."""
+    path, _ = QFileDialog.getOpenFileName(
+        window, "Open a size field or an image", "",
+        "Size fields and images (*.png *.jpg *.jpeg *.tif *.tiff *.npy *.npz *.vtu *.vtk *.vti *.vtp *.msh *.pos "
+        "*.mesh *.sol *.nii *.gz *.dcm);;All files (*)",
+    )  # fmt: skip
+    if path:
+        window.controller.open_source(path)
+
+
+def save_picture(window: MainWindow, path: str | None = None) -> None:
+    """Save what the active pane shows, colour bar and verdict included; asks for the place if none is given."""
+    from sizeviz.scene.picture import save_picture as save
+
+    pane = window.board.active
+    path = path or _ask_picture(window, "picture.png")
+    if not path:
+        return
+    subject, view = pane.subject, pane.view.with_changes(dark=window.theme.dark)
+
+    def work() -> None:
+        save(subject, path, color_by=view.color_by, measure=view.measure, dark=view.dark)
+
+    _saved(window, path, work)
+
+
+def save_comparison(window: MainWindow, path: str | None = None) -> None:
+    """Save the comparison of the methods on show."""
+    from sizeviz.scene.comparison import save_comparison as save
+
+    study = window.controller.study
+    path = path or (_ask_picture(window, "compare.png") if study is not None else None)
+    if not path or study is None:
+        return
+    methods = [name for name in window.board.methods if name in study.runs and study.runs[name].is_complete]
+    measure = window.board.active.view.measure
+    _saved(window, path, lambda: save(study, path, methods=methods, measure=measure, dark=window.theme.dark))
+
+
+def _saved(window: MainWindow, path: str, work: object) -> None:
+    """Draw in the window's thread, where VTK belongs, and say how it went."""
+    from sizeviz.errors import SizevizError
+
+    try:
+        work()  # type: ignore[operator]
+    except SizevizError as error:
+        window.controller.noticed.emit(Notice("error", str(error)))
+        return
+    window.controller.noticed.emit(Notice("info", f"Saved {Path(path).name}"))
+
+
+def _ask_picture(window: MainWindow, name: str) -> str:
+    path, _ = QFileDialog.getSaveFileName(window, "Save a picture", name, "Pictures (*.png *.jpg *.tif *.svg *.pdf)")
+    return str(path)
+
+
+def _connect_keys(window: MainWindow) -> None:
+    """Esc drops what is under way; Enter finishes a line or polygon."""
+    escape = QShortcut(Qt.Key.Key_Escape, window)
+    escape.activated.connect(lambda: _escape(window))
+    for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+        enter = QShortcut(key, window.board)
+        enter.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+        enter.activated.connect(window.tool.finish)
+
+
+def _escape(window: MainWindow) -> None:
+    if window.controller.stroke is not None:
+        window.tool.abort()
+    elif window.tool.active:
+        window.actions_["paint"].setChecked(False)
+    else:
+        window.toast.hide()
+        window.inspector.set_pin("", None)
+
+
+def _on_study(window: MainWindow, old: Study | None, new: Study) -> None:
+    if old is None or old.source.domain is not new.source.domain:
+        x0, y0, x1, y1 = new.source.domain.bounds
+        window.paint.suit(new.source.field, max(x1 - x0, y1 - y0))
+    window.show_study(new)
+
+
+def _on_views(window: MainWindow) -> None:
+    window.controller.set_wanted(window.board.methods)
+    if window.controller.study is not None:
+        window.show_judgement()
+        window.show_state()
+
+
+def _on_tool(window: MainWindow, on: bool) -> None:
+    action = window.actions_["paint"]
+    if action.isChecked() != on:
+        action.setChecked(on)
+    if on:
+        window.sections[1].head.setChecked(True)
+
+
+def _set_measure(window: MainWindow, measure: str) -> None:
+    for pane in window.board.panes:
+        pane.set_view(pane.view.with_changes(measure=measure), tell=False)
+    window.board.refresh()
+    _on_views(window)
+
+
+def _color(window: MainWindow, quantity: str) -> None:
+    pane = window.board.active
+    changes = {"color_by": quantity, "cmap": None, "range_mode": "auto", "low": None, "high": None, "log": None}
+    pane.set_view(pane.view.with_changes(**changes, classes=0))
+
+
+def _zoom(window: MainWindow, factor: float) -> None:
+    surface = window.board.active.surface
+    surface.move_camera(surface.camera.zoomed(factor, surface.camera.x, surface.camera.y))
+
+
+def _select(window: MainWindow, method: str, chosen: NDArray | None) -> None:
+    window.board.select(None if chosen is None else Selection(method, chosen))

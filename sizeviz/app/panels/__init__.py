@@ -1,0 +1,1 @@
+"""The panels of the pipeline, in its order: source, paint, size, mesh, smooth, judge. They emit intents only."""

@@ -1,0 +1,172 @@
+"""The few controls that all panels are made of."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import QSignalBlocker, Qt, Signal
+from qtpy.QtWidgets import (
+    QComboBox,
+    QDoubleSpinBox,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QSlider,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+SLIDER_STEPS = 400
+
+
+class Section(QFrame):
+    """A part of the sidebar that folds away under its heading."""
+
+    def __init__(self, title: str, body: QWidget, parent: QWidget | None = None, open_: bool = True) -> None:
+        super().__init__(parent)
+        self.setObjectName("section")
+        self.body = body
+        self.head = QToolButton()
+        self.head.setObjectName("sectionHead")
+        self.head.setText(title)
+        self.head.setCheckable(True)
+        self.head.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.head.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.head.setAccessibleName(f"{title}: show or hide")
+        self.head.toggled.connect(self._fold)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.head)
+        column.addWidget(body)
+        self.head.setChecked(open_)
+        self._fold(open_)
+
+    def _fold(self, open_: bool) -> None:
+        self.head.setArrowType(Qt.ArrowType.DownArrow if open_ else Qt.ArrowType.RightArrow)
+        self.body.setVisible(open_)
+
+
+class Form(QWidget):
+    """Rows of a label and a control, with a tooltip each."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.grid = QGridLayout(self)
+        self.grid.setContentsMargins(14, 2, 14, 14)
+        self.grid.setHorizontalSpacing(10)
+        self.grid.setVerticalSpacing(7)
+        self.grid.setColumnStretch(1, 1)
+
+    def add(self, label: str, control: QWidget, tip: str) -> None:
+        """Add a row; the control is named for screen readers by its label."""
+        row = self.grid.rowCount()
+        words = QLabel(label)
+        words.setBuddy(control)
+        for widget in (words, control):
+            widget.setToolTip(tip)
+        if not control.accessibleName():
+            control.setAccessibleName(label)
+        self.grid.addWidget(words, row, 0)
+        self.grid.addWidget(control, row, 1)
+
+    def add_wide(self, widget: QWidget) -> None:
+        """Add a row of one widget."""
+        self.grid.addWidget(widget, self.grid.rowCount(), 0, 1, 2)
+
+
+class LogNumber(QWidget):
+    """A positive number: a field to type in, and a slider whose even steps are even factors."""
+
+    changed = Signal(float)
+
+    def __init__(self, low: float, high: float, value: float, decimals: int = 3, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._low, self._high = low, high
+        self.spin = number(value, low * 1e-3, high * 1e3, decimals)
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setRange(0, SLIDER_STEPS)
+        self.slider.setPageStep(SLIDER_STEPS // 20)
+        self.spin.setFixedWidth(96)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(9)
+        row.addWidget(self.slider, 1)
+        row.addWidget(self.spin)
+        self.setFocusProxy(self.spin)
+        self.spin.valueChanged.connect(self._typed)
+        self.slider.valueChanged.connect(self._slid)
+        self.set_value(value)
+
+    def value(self) -> float:
+        """Return the number."""
+        return float(self.spin.value())
+
+    def set_value(self, value: float) -> None:
+        """Show a number without telling."""
+        with QSignalBlocker(self.spin), QSignalBlocker(self.slider):
+            self.spin.setValue(value)
+            self.slider.setValue(self._place(value))
+
+    def setAccessibleName(self, name: str) -> None:
+        """Name both parts for screen readers."""
+        super().setAccessibleName(name)
+        self.spin.setAccessibleName(name)
+        self.slider.setAccessibleName(f"{name}, slider")
+
+    def _place(self, value: float) -> int:
+        share = math.log(max(value, 1e-300) / self._low) / math.log(self._high / self._low)
+        return round(SLIDER_STEPS * min(max(share, 0.0), 1.0))
+
+    def _typed(self, value: float) -> None:
+        with QSignalBlocker(self.slider):
+            self.slider.setValue(self._place(value))
+        self.changed.emit(value)
+
+    def _slid(self, step: int) -> None:
+        value = self._low * (self._high / self._low) ** (step / SLIDER_STEPS)
+        digits = 2 - math.floor(math.log10(value))
+        value = round(value, digits)
+        with QSignalBlocker(self.spin):
+            self.spin.setValue(value)
+        self.changed.emit(value)
+
+
+def number(value: float, low: float, high: float, decimals: int = 3) -> QDoubleSpinBox:
+    """Return a field for a number; it tells when the number is finished, not at every key."""
+    spin = QDoubleSpinBox()
+    spin.setDecimals(decimals)
+    spin.setRange(low, high)
+    spin.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
+    spin.setKeyboardTracking(False)
+    spin.setValue(value)
+    return spin
+
+
+def choice(entries: Sequence[tuple[str, object]]) -> QComboBox:
+    """Return a menu of words, each with the value it stands for."""
+    box = QComboBox()
+    for words, value in entries:
+        box.addItem(words, value)
+    return box
+
+
+def choose(box: QComboBox, value: object) -> None:
+    """Show the entry that stands for a value, without telling."""
+    with QSignalBlocker(box):
+        box.setCurrentIndex(max(box.findData(value), 0))
+
+
+def hint(words: str = "") -> QLabel:
+    """Return a line of quiet explanation."""
+    label = QLabel(words)
+    label.setProperty("role", "muted")
+    label.setWordWrap(True)
+    return label

@@ -1,0 +1,1 @@
+"""Panes: a flat picture with its controls, and the board that keeps several of them together."""

@@ -1,0 +1,89 @@
+"""The first page: what sizeviz is for, the gallery, and what was open lately."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import QSize, Qt, Signal
+from qtpy.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
+
+from sizeviz.app.panels.source import thumbnail
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sizeviz.app.engine import Example
+
+CARD = QSize(124, 124)
+COLUMNS = 5
+
+
+class Welcome(QWidget):
+    """Shown until something is open."""
+
+    open_requested = Signal(str)
+    file_requested = Signal()
+    canvas_requested = Signal()
+
+    def __init__(self, examples: Sequence[Example], recent: Sequence[str], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        title = QLabel("See whether a mesh honours its size field")
+        title.setProperty("role", "title")
+        words = QLabel("Open an example, drop a file anywhere, or paint sizes on a blank canvas.")
+        words.setProperty("role", "muted")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(48, 30, 48, 30)
+        column.setSpacing(14)
+        column.addStretch(1)
+        for widget in (title, words):
+            column.addWidget(widget, 0, Qt.AlignmentFlag.AlignHCenter)
+        column.addSpacing(10)
+        column.addWidget(self._gallery(examples), 0, Qt.AlignmentFlag.AlignHCenter)
+        column.addLayout(self._buttons())
+        if recent:
+            column.addWidget(self._recent(recent), 0, Qt.AlignmentFlag.AlignHCenter)
+        column.addStretch(2)
+
+    def _gallery(self, examples: Sequence[Example]) -> QWidget:
+        frame = QFrame()
+        grid = QGridLayout(frame)
+        grid.setSpacing(12)
+        for k, example in enumerate(examples):
+            card = QToolButton()
+            card.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
+            card.setIcon(thumbnail(example.name))
+            card.setIconSize(CARD)
+            card.setText(example.title)
+            card.setToolTip(f"<b>{example.title}</b><br>{example.words}")
+            card.setAccessibleName(f"Open the example {example.title}")
+            card.clicked.connect(lambda checked=False, name=example.name: self.open_requested.emit(name))
+            grid.addWidget(card, k // COLUMNS, k % COLUMNS)
+        return frame
+
+    def _buttons(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        row.addStretch(1)
+        file, canvas = QPushButton("Open file…"), QPushButton("Blank canvas")
+        file.setProperty("primary", True)
+        file.clicked.connect(self.file_requested)
+        canvas.clicked.connect(self.canvas_requested)
+        row.addWidget(file)
+        row.addWidget(canvas)
+        row.addStretch(1)
+        return row
+
+    def _recent(self, recent: Sequence[str]) -> QWidget:
+        frame = QWidget()
+        row = QHBoxLayout(frame)
+        label = QLabel("Recent:")
+        label.setProperty("role", "muted")
+        row.addWidget(label)
+        for spec in recent[:5]:
+            button = QToolButton()
+            button.setText(spec if spec.startswith("expr:") else Path(spec).name)
+            button.setToolTip(spec)
+            button.clicked.connect(lambda checked=False, spec=spec: self.open_requested.emit(spec))
+            row.addWidget(button)
+        return frame

@@ -1,0 +1,275 @@
+"""The window: one calm frame around panes and panels; it arranges and connects, and decides nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtWidgets import (
+    QApplication,
+    QDockWidget,
+    QLabel,
+    QMainWindow,
+    QScrollArea,
+    QSizePolicy,
+    QSplitter,
+    QStackedWidget,
+    QTabWidget,
+    QToolBar,
+    QToolButton,
+    QUndoView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from sizeviz.app.actions import Actions
+from sizeviz.app.brush.tool import PaintTool
+from sizeviz.app.controller import Controller
+from sizeviz.app.feedback import LogPanel, Progress, Toast
+from sizeviz.app.inspect.histogram import HistogramPanel
+from sizeviz.app.inspect.judge import StatisticsPanel, WorstPanel
+from sizeviz.app.inspect.look import Inspector
+from sizeviz.app.intents import connect_actions, connect_panels
+from sizeviz.app.palette import CommandPalette, ShortcutOverlay
+from sizeviz.app.panels.controls import Section
+from sizeviz.app.panels.options import JudgePanel, MeshPanel, SizePanel, SmoothPanel
+from sizeviz.app.panels.paint import PaintPanel
+from sizeviz.app.panels.source import SourcePanel
+from sizeviz.app.panes.board import PaneBoard
+from sizeviz.app.panes.canvas import GLCanvas
+from sizeviz.app.settings import Settings
+from sizeviz.app.theme import THEMES, Theme, apply_theme
+from sizeviz.app.welcome import Welcome
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from qtpy.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QResizeEvent
+
+    from sizeviz.app.engine import Engine
+    from sizeviz.app.panes.canvas import Canvas
+    from sizeviz.study import Study
+
+SIDEBAR = 322
+"""Width of the pipeline's panels, in device-independent pixels."""
+
+INSPECTOR = 380
+"""Width of the judgement's panels."""
+
+
+class MainWindow(QMainWindow):
+    """The application's window.
+
+    Parameters
+    ----------
+    engine : Engine
+        The pipeline.
+    settings : Settings, optional
+        What is remembered; the platform's own place by default.
+    make_canvas : callable
+        Makes a pane's drawing widget; tests without OpenGL bring their own.
+    """
+
+    closed = Signal()
+
+    def __init__(
+        self,
+        engine: Engine,
+        settings: Settings | None = None,
+        make_canvas: Callable[[QWidget], Canvas] = GLCanvas,
+    ) -> None:
+        super().__init__()
+        self.setWindowTitle("sizeviz")
+        self.setAcceptDrops(True)
+        self.settings = settings or Settings()
+        self.theme = THEMES.get(self.settings.theme, THEMES["light"])
+        self.controller = Controller(engine, self)
+        self.actions_ = Actions(self)
+        self.examples = list(engine.examples())
+        self._make_canvas = make_canvas
+        self._build_centre()
+        self._build_pipeline()
+        self._build_inspector()
+        self._build_bars()
+        self.tool = PaintTool(self.controller, self.board, self.paint)
+        self.inspector = Inspector(self.controller, self.board, self.readout, self.worst)
+        self.palette_ = CommandPalette(self.actions_, self)
+        self.overlay = ShortcutOverlay(self.actions_, self)
+        connect_panels(self)
+        connect_actions(self)
+        self.set_theme(self.theme)
+        if not self.settings.restore_layout(self):
+            self.resize(1500, 920)
+
+    # -- building --------------------------------------------------------------------------------------------------
+
+    def _build_centre(self) -> None:
+        self.board = PaneBoard(self.controller, self._make_canvas)
+        self.welcome = Welcome(self.examples, self.settings.recent)
+        self.pages = QStackedWidget()
+        self.pages.addWidget(self.welcome)
+        self.pages.addWidget(self.board)
+        self.setCentralWidget(self.pages)
+        self.toast = Toast(self.pages)
+
+    def _build_pipeline(self) -> None:
+        self.source = SourcePanel(self.examples)
+        self.paint, self.size_panel, self.mesh_panel = PaintPanel(), SizePanel(), MeshPanel()
+        self.smooth_panel, self.judge_panel = SmoothPanel(), JudgePanel()
+        inner = QWidget()
+        inner.setObjectName("sidebar")
+        column = QVBoxLayout(inner)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        self.sections = [
+            Section("1   Source", self.source),
+            Section("     Paint", self.paint, open_=False),
+            Section("2   Size", self.size_panel),
+            Section("3   Mesh", self.mesh_panel, open_=False),
+            Section("4   Smooth", self.smooth_panel, open_=False),
+            Section("5   Judge", self.judge_panel),
+        ]
+        for section in self.sections:
+            column.addWidget(section)
+        column.addStretch(1)
+        scroll = QScrollArea()
+        scroll.setWidget(inner)
+        scroll.setWidgetResizable(True)
+        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        scroll.setMinimumWidth(SIDEBAR)
+        self.pipeline_dock = self._dock("Pipeline", scroll, Qt.DockWidgetArea.LeftDockWidgetArea)
+
+    def _build_inspector(self) -> None:
+        self.statistics, self.worst = StatisticsPanel(), WorstPanel()
+        self.histograms = [HistogramPanel("ratio", self.theme), HistogramPanel("quality", self.theme)]
+        judge = QSplitter(Qt.Orientation.Vertical)
+        judge.setChildrenCollapsible(False)
+        for panel in (self.statistics, *self.histograms, self.worst):
+            judge.addWidget(panel)
+        judge.setSizes([300, 160, 160, 240])
+        self.history = QUndoView(self.controller.store.stack)
+        self.history.setEmptyLabel("As opened")
+        self.history.setAccessibleName("History")
+        self.log = LogPanel()
+        self.tabs = QTabWidget()
+        self.tabs.setDocumentMode(True)
+        for page, words in ((judge, "Judgement"), (self.history, "History"), (self.log, "Log")):
+            self.tabs.addTab(page, words)
+        self.tabs.setMinimumWidth(INSPECTOR)
+        self.inspector_dock = self._dock("Results", self.tabs, Qt.DockWidgetArea.RightDockWidgetArea)
+
+    def _dock(self, title: str, widget: QWidget, area: Qt.DockWidgetArea) -> QDockWidget:
+        dock = QDockWidget(title, self)
+        dock.setObjectName(title)
+        dock.setTitleBarWidget(QWidget())  # no title bar: the panels name themselves
+        dock.setFeatures(QDockWidget.DockWidgetFeature.DockWidgetClosable)
+        dock.setWidget(widget)
+        self.addDockWidget(area, dock)
+        return dock
+
+    def _build_bars(self) -> None:
+        bar = QToolBar("Tools")
+        bar.setObjectName("tools")
+        bar.setMovable(False)
+        for name in ("open", "undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-2",
+                     "panes-3", "panes-4"):  # fmt: skip
+            if name:
+                bar.addAction(self.actions_[name])
+            else:
+                bar.addSeparator()
+        short = {"open": "Open…", "paint": "Paint", "link": "Link", "shared-range": "Shared range", "swap": "Swap",
+                 "fit": "Fit", "panes-2": "2", "panes-3": "3", "panes-4": "4"}  # fmt: skip
+        for name, words in short.items():
+            self.actions_[name].setIconText(words)
+        spacer = QWidget()
+        spacer.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+        bar.addWidget(spacer)
+        search = QToolButton()
+        search.setObjectName("search")
+        search.setText("Search commands          Ctrl+K")
+        search.setAccessibleName("Open the command palette")
+        search.clicked.connect(lambda: self.actions_["palette"].trigger())
+        bar.addWidget(search)
+        for name, words in (("theme", "Dark"), ("shortcuts", "?")):
+            self.actions_[name].setIconText(words)
+            bar.addAction(self.actions_[name])
+        self.addToolBar(bar)
+        self.toolbar = bar
+        self.readout = QLabel("")
+        self.readout.setAccessibleName("Values under the cursor")
+        self.readout.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.progress = Progress()
+        self.statusBar().setSizeGripEnabled(False)
+        self.statusBar().addWidget(self.readout, 1)
+        self.statusBar().addPermanentWidget(self.progress)
+
+    # -- showing ---------------------------------------------------------------------------------------------------
+
+    def show_study(self, study: Study) -> None:
+        """Bring panels and panes to a study."""
+        self.pages.setCurrentWidget(self.board)
+        self.setWindowTitle(f"{study.source.label} – sizeviz")
+        self.source.show_source(study.source)
+        for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):
+            panel.show_options(study.options)
+        self.board.refresh()
+        self.show_judgement()
+        self.show_state()
+
+    def show_judgement(self) -> None:
+        """Bring table, histograms and the worst elements to the active pane."""
+        pane = self.board.active
+        methods = tuple(dict.fromkeys([*self.board.methods]))
+        self.statistics.show_study(self.controller.study, methods, pane.view.measure)
+        for histogram in self.histograms:
+            histogram.show_subject(pane.subject, pane.view.method, pane.view)
+        self.worst.show_subject(pane.subject, pane.view.method, pane.view.measure)
+
+    def show_state(self) -> None:
+        """Bring undo, redo, Apply and the badges to what is possible now."""
+        stack, busy = self.controller.store.stack, self.controller.jobs.is_busy
+        self.actions_["undo"].setEnabled(stack.canUndo())
+        self.actions_["redo"].setEnabled(stack.canRedo())
+        missing = len(self.controller.missing())
+        self.actions_["apply"].setEnabled(missing > 0 and not busy)
+        self.actions_["cancel"].setEnabled(busy)
+        self.judge_panel.show_state(missing, busy)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Change between light and dark."""
+        self.theme = theme
+        apply_theme(QApplication.instance(), theme)
+        self.settings.theme = "dark" if theme.dark else "light"
+        self.board.dark = theme.dark
+        for histogram in self.histograms:
+            histogram.set_theme(theme)
+        self.board.refresh()
+
+    # -- files dropped, window closed ------------------------------------------------------------------------------
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        """Take files."""
+        if any(url.isLocalFile() for url in event.mimeData().urls()):
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        """Open the first file dropped."""
+        paths = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
+        if paths:
+            event.acceptProposedAction()
+            self.controller.open_source(paths[0])
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep the message in its place."""
+        super().resizeEvent(event)
+        if self.toast.isVisible():
+            self.toast.place()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Stop the worker, remember the layout, free VTK; in this order, so that nothing is used after it is gone."""
+        self.controller.jobs.shut_down()
+        self.settings.save_layout(self)
+        self.log.detach()
+        self.board.dispose()
+        self.closed.emit()
+        super().closeEvent(event)
