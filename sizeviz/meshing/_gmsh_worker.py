@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import itertools
 import sys
+import tempfile
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -90,7 +92,13 @@ def _outline(gmsh: Any, request: Mapping[str, Any]) -> list[int]:
 
 
 def _background(gmsh: Any, request: Mapping[str, Any]) -> None:
-    """Hand the field over as a view of linear triangles, and let it alone set the sizes."""
+    """Hand the field over, and let it alone set the sizes."""
+    field = _structured(gmsh, request) if "grid_frame" in request else _view(gmsh, request)
+    gmsh.model.mesh.field.setAsBackgroundMesh(field)
+
+
+def _view(gmsh: Any, request: Mapping[str, Any]) -> int:
+    """Hand the field over as a view of linear triangles."""
     corners = request["points"][request["triangles"]]
     sizes = request["sizes"][request["triangles"]]
     rows = np.zeros((len(corners), 12))
@@ -99,7 +107,19 @@ def _background(gmsh: Any, request: Mapping[str, Any]) -> None:
     gmsh.view.addListData(view, "ST", len(rows), rows.ravel())
     field = gmsh.model.mesh.field.add("PostView")
     gmsh.model.mesh.field.setNumber(field, "ViewTag", view)
-    gmsh.model.mesh.field.setAsBackgroundMesh(field)
+    return int(field)
+
+
+def _structured(gmsh: Any, request: Mapping[str, Any]) -> int:
+    """Hand the field over as values on a grid, through the file that Gmsh wants them in."""
+    nx, ny, _ = request["grid_counts"]
+    with tempfile.NamedTemporaryFile(suffix=".dat", dir=request["folder"], delete=False) as file:
+        file.write(request["grid_frame"].astype("<f8").tobytes() + request["grid_counts"].astype("<i4").tobytes())
+        file.write(np.ascontiguousarray(request["sizes"].reshape(ny, nx).T, dtype="<f8").tobytes())
+    field = gmsh.model.mesh.field.add("Structured")
+    gmsh.model.mesh.field.setString(field, "FileName", file.name)
+    gmsh.model.mesh.field.setNumber(field, "TextFormat", 0)
+    return int(field)
 
 
 def _result(gmsh: Any, request: Mapping[str, Any], tags: list[int]) -> Arrays:
@@ -128,7 +148,8 @@ def _split(rows: NDArray[np.float64], starts: NDArray[np.int64]) -> list[NDArray
 def main(request: str, result: str) -> None:
     """Answer one request; both are ``.npz`` files."""
     with np.load(request) as arrays:
-        content = {name: arrays[name] for name in arrays.files}
+        content: dict[str, Any] = {name: arrays[name] for name in arrays.files}
+    content["folder"] = str(Path(request).parent)
     answer: dict[str, Any] = meshed(content)
     np.savez(result, **answer)
 

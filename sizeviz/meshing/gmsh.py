@@ -49,11 +49,15 @@ class GmshGenerator:
     recombination : int
         Gmsh's ``Mesh.RecombinationAlgorithm``: 1 is Blossom (Remacle et al. 2012, DOI 10.1002/nme.3279), 3 Blossom
         full-quad.
+    structured: bool
+        Whether a field on a grid is handed over as Gmsh's Structured field, bilinear and found by arithmetic, rather
+        than as a view of triangles, which Gmsh searches for every query.
     """
 
     name: str = "gmsh"
     algorithm: int = 8
     recombination: int = 1
+    structured: bool = False
 
     def generate(self, domain: Domain, size: SizeField, options: MeshOptions, monitor: Monitor = SILENT) -> QuadMesh:
         """Return the raw mesh, leftover triangles merged.
@@ -98,6 +102,16 @@ class GmshGenerator:
             "algorithm": np.array(self.algorithm),
             "recombination": np.array(self.recombination),
             "seed": np.array(options.seed),
+            **self._grid(size),
+        }
+
+    def _grid(self, size: SizeField) -> dict[str, NDArray[Any]]:
+        grid = size.background.grid
+        if grid is None or not self.structured:
+            return {}
+        return {
+            "grid_frame": np.array([grid.x0, grid.y0, 0.0, grid.dx, grid.dy, 1.0]),
+            "grid_counts": np.array([grid.nx, grid.ny, 1], dtype=np.int32),
         }
 
 

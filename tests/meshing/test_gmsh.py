@@ -14,7 +14,7 @@ from sizeviz.geometry import Domain, QuadMesh
 from sizeviz.meshing import gmsh as backend
 from sizeviz.meshing.gmsh import GmshGenerator
 from sizeviz.meshing.options import MeshOptions
-from sizeviz.sizing import BackgroundMesh, SizeField
+from sizeviz.sizing import BackgroundMesh, Grid, SizeField
 
 pytestmark = pytest.mark.gmsh
 
@@ -50,6 +50,25 @@ def test_the_field_sets_the_sizes() -> None:
     coarse = generator.generate(domain, field(0.04, 0.08), MeshOptions(scale=1.0)).n_quads
     fine = generator.generate(domain, field(0.04, 0.08), MeshOptions(scale=0.5)).n_quads
     assert 3.0 < fine / coarse < 5.0
+
+
+def test_a_grid_gives_the_sizes_of_its_view() -> None:
+    domain, options = Domain.unit_square(), MeshOptions(scale=1.0)
+    counts = [GmshGenerator(structured=structured).generate(domain, field(), options).n_quads for structured in (0, 1)]
+    assert counts[1] == pytest.approx(counts[0], rel=0.03)
+
+
+def test_a_grid_is_not_turned_or_mirrored() -> None:
+    background = BackgroundMesh.regular(Grid(1.0, -2.0, 0.05, 0.1, 41, 31))
+    x, y = background.points.T
+    size = SizeField(background, 0.05 + 0.1 * (x - 1.0) + 0.02 * (y + 2.0))
+    domain = Domain.rectangle(1.0, -2.0, 3.0, 1.0)
+    mesh = GmshGenerator(structured=True).generate(domain, size, MeshOptions(scale=1.0))
+    corners = mesh.points[mesh.quads]
+    centre, edge = corners.mean(axis=1), np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean(axis=1)
+    asked = 0.05 + 0.1 * (centre[:, 0] - 1.0) + 0.02 * (centre[:, 1] + 2.0)
+    assert np.median(edge / asked) == pytest.approx(1.0, abs=0.15)
+    assert np.corrcoef(edge, asked)[0, 1] > 0.95
 
 
 def test_holes_curves_lines_and_points_are_kept() -> None:
