@@ -10,11 +10,14 @@ from sizeviz.sizing.field import SizeField
 from sizeviz.sizing.options import LimitOptions, PreserveOptions
 
 if TYPE_CHECKING:
+    from sizeviz.sizing.analytic import AnalyticSize, SizeFunction
     from sizeviz.sizing.combine import minimum
     from sizeviz.sizing.count import ideal_count
     from sizeviz.sizing.envelopes import limited, preserved
 
 _LAZY = {
+    "AnalyticSize": "analytic",
+    "SizeFunction": "analytic",
     "ideal_count": "count",
     "limited": "envelopes",
     "minimum": "combine",
@@ -22,11 +25,13 @@ _LAZY = {
 }
 
 __all__ = [
+    "AnalyticSize",
     "BackgroundMesh",
     "Grid",
     "LimitOptions",
     "PreserveOptions",
     "SizeField",
+    "SizeFunction",
     "ideal_count",
     "limited",
     "minimum",
