@@ -134,10 +134,12 @@ def _smooth(study: Study, method: str, run: MethodRun, monitor: Monitor) -> Meth
 
 def _judge(study: Study, method: str, run: MethodRun, monitor: Monitor) -> MethodRun:
     assert run.target is not None and run.mesh is not None
-    ideal = ideal_count(run.target, study.source.domain)
-    return replace(
-        run, report=judged(run.mesh, study.source.reference, beta=study.options.beta, ideal=ideal, monitor=monitor)
+    options, source = study.options, study.source
+    ideal = ideal_count(run.target, source.domain)
+    report = judged(
+        run.mesh, source.reference, beta=options.beta, ideal=ideal, threads=options.threads, monitor=monitor
     )
+    return replace(run, report=report)
 
 
 def _with_threads(options: StudyOptions) -> StudyOptions:

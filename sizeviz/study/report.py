@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sizeviz.conformity import Measure, MeshReport
+    from sizeviz.conformity import Measure
     from sizeviz.geometry import QuadMesh
     from sizeviz.study.options import StudyOptions
     from sizeviz.study.study import MethodRun, Study
@@ -111,21 +111,8 @@ def versions() -> dict[str, str]:
 def _method_numbers(run: MethodRun) -> dict[str, Any]:
     report = run.report
     assert report is not None
-    return {
-        "n_quads": int(report.n_quads),
-        "n_nodes": int(report.n_nodes),
-        "n_inverted": int(report.n_inverted),
-        "ideal_quads": None if report.ideal_quads is None else float(report.ideal_quads),
-        "correct_percent": _by_measure(report, "correct_percent"),
-        "max_ratio": _by_measure(report, "max_ratio"),
-        "quality": {name: float(report.quality_summary[name]) for name in ("min", "max", "mean", "std")},
-        "irregular_percent": float(report.irregular_percent),
-        "seconds": {**{stage: round(t, 4) for stage, t in run.seconds.items()}, "total": round(run.total_seconds, 4)},
-    }
-
-
-def _by_measure(report: MeshReport, name: str) -> dict[str, float]:
-    return {key.replace("-", "_"): float(value) for key, value in getattr(report, name).items()}
+    seconds = {**run.seconds, "total": run.total_seconds}
+    return {**report.summary(), "seconds": {stage: round(taken, 4) for stage, taken in seconds.items()}}
 
 
 def _plain(value: Any) -> Any:

@@ -1,0 +1,193 @@
+"""Bad input: one line that names it and the remedy, exit code 2, and nothing left behind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sizeviz.cli import run_command_line
+
+
+def refused(arguments: list[str], capsys: pytest.CaptureFixture, code: int = 2) -> str:
+    """Return what is said, after checking that it is one line on standard error alone."""
+    assert run_command_line(arguments) == code
+    printed = capsys.readouterr()
+    assert not printed.out
+    assert printed.err.startswith("sizeviz: ")
+    assert printed.err.count("\n") == 1, printed.err
+    assert "Traceback" not in printed.err
+    return printed.err
+
+
+def array(value: object) -> Callable[[Path], None]:
+    return lambda path: np.save(path, value)
+
+
+def raw(content: bytes) -> Callable[[Path], None]:
+    return lambda path: path.write_bytes(content)
+
+
+def with_value(value: float) -> np.ndarray:
+    sizes = np.full((5, 5), 0.1)
+    sizes[2, 3] = value
+    return sizes
+
+
+FIELDS = {
+    "missing": (lambda path: None, "no such file"),
+    "corrupt": (raw(b"\x93NUMPY\x01\x00junk"), "f.npy"),
+    "empty file": (raw(b""), "empty"),
+    "empty array": (array(np.empty((0, 0))), "f.npy"),
+    "NaN": (array(with_value(np.nan)), "NaN"),
+    "infinite": (array(with_value(np.inf)), "infinite"),
+    "zero": (array(with_value(0.0)), "not above zero"),
+    "negative": (array(with_value(-0.1)), "not above zero"),
+    "one row": (array(np.ones((1, 9))), "2-D array"),
+    "three dimensions": (array(np.ones((3, 3, 3))), "2-D array"),
+    "text": (array(np.array([["a", "b"], ["c", "d"]])), "f.npy"),
+    "pickle": (array(np.array([[{}, {}], [{}, {}]], dtype=object)), "f.npy"),
+}
+
+
+@pytest.mark.parametrize("case", FIELDS)
+def test_fields_that_cannot_be_used(case: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    make, words = FIELDS[case]
+    make(tmp_path / "f.npy")
+    out = tmp_path / "out"
+    said = refused(["compare", str(tmp_path / "f.npy"), "--out", str(out)], capsys)
+    assert words in said
+    assert "f.npy" in said
+    assert not out.exists()
+
+
+FORMULAS = {
+    "unknown name": ("0.1 + z", "z"),
+    "unknown function": ("exec(1)", "exec"),
+    "code": ("__import__('os').system('true')", "formula"),
+    "attribute": ("x.__class__", "formula"),
+    "subscript": ("x[0]", "formula"),
+    "lambda": ("(lambda: 0.1)()", "formula"),
+    "statement": ("import os", "formula"),
+    "nothing": ("", "formula"),
+    "torn": ("0.1 + (x", "formula"),
+    "negative": ("x - 2", "above"),
+    "zero": ("0", "above"),
+    "not a number": ("0.1 + log(x - 5)", "formula"),
+    "huge": ("9**9**9**9**9", "formula"),
+}
+
+
+@pytest.mark.parametrize("case", FORMULAS)
+def test_formulas_that_cannot_be_used(case: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    formula, words = FORMULAS[case]
+    out = tmp_path / "out"
+    said = refused(["run", f"expr:{formula}", "--out", str(out)], capsys)
+    assert words in said
+    assert not out.exists()
+
+
+OPTIONS = {
+    "alpha zero": (["--alpha", "0"], "alpha is 0"),
+    "alpha negative": (["--alpha", "-1"], "alpha is -1"),
+    "alpha NaN": (["--alpha", "nan"], "alpha is nan"),
+    "alpha a word": (["--alpha", "two"], "two"),
+    "beta zero": (["--beta", "0"], "beta is 0"),
+    "epsilon zero": (["--epsilon", "0"], "epsilon is 0"),
+    "mesh scale": (["--mesh-scale", "0"], "mesh scale is 0"),
+    "threads": (["--threads", "0"], "threads is 0"),
+    "seed": (["--seed", "-4"], "seed is -4"),
+    "method": (["--mesher", "magic"], "magic"),
+    "measure": (["--measure", "volume"], "volume"),
+    "unknown option": (["--speed", "high"], "--speed"),
+    "too many elements": (["--max-elements", "10"], "10"),
+    "domain missing": (["--domain", "none.csv"], "none.csv"),
+}
+
+
+@pytest.mark.parametrize("case", OPTIONS)
+def test_options_that_make_no_sense(case: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    typed, words = OPTIONS[case]
+    out = tmp_path / "out"
+    said = refused(["compare", "expr:0.1 + 0.1*x", "--out", str(out), *typed], capsys)
+    assert words in said
+    assert not out.exists()
+
+
+def test_an_outline_that_crosses_itself(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    outline, out = tmp_path / "outline.csv", tmp_path / "out"
+    outline.write_text("0,0\n3,1\n3,0\n0,1\n0,0.5\n1,0.7\n")
+    said = refused(["run", "expr:0.1", "--domain", str(outline), "--out", str(out)], capsys)
+    assert "outline.csv" in said and "cross" in said
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("command", ["run", "compare"])
+def test_an_output_that_cannot_be_written(command: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    blocker = tmp_path / "file"
+    blocker.write_text("in the way")
+    said = refused([command, "expr:0.1", "--out", str(blocker / "below")], capsys)
+    assert str(blocker / "below") in said and "cannot create" in said
+    assert blocker.read_text() == "in the way"
+
+
+def test_the_output_is_tried_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from sizeviz.cli import session
+
+    monkeypatch.setattr(session, "loaded", lambda *_: pytest.fail("work began"))
+    refused(["run", "ring", "--out", "/proc/sizeviz"], capsys)
+    refused(["field", "ring", "-o", str(tmp_path / "none" / "h.vtu")], capsys)
+    refused(["field", "ring", "-o", str(tmp_path / "h.docx")], capsys)
+
+
+MESHES = {
+    "missing": (lambda path: None, "no such file"),
+    "empty": (raw(b""), "empty"),
+    "corrupt": (raw(b"<VTKFile"), "corrupt"),
+    "other XML": (raw(b"<html></html>"), "m.vtu"),
+}
+
+
+@pytest.mark.parametrize("case", MESHES)
+def test_meshes_that_cannot_be_drawn(case: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    make, words = MESHES[case]
+    make(tmp_path / "m.vtu")
+    said = refused(["shot", str(tmp_path / "m.vtu"), "-o", str(tmp_path / "m.png")], capsys)
+    assert words in said and "m.vtu" in said
+    assert not (tmp_path / "m.png").exists()
+
+
+def test_mistyped_commands(capsys: pytest.CaptureFixture) -> None:
+    assert "paint" in refused(["paint", "ring"], capsys)
+    assert "out" in refused(["compare", "ring"], capsys).lower()
+    assert "source" in refused(["compare", "--out", "x"], capsys).lower()
+    assert "nowhere" in refused(["field", "nowhere", "-o", "x.vtu"], capsys)
+
+
+def test_what_should_not_happen_is_still_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from sizeviz.cli import session
+
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("first\nsecond")
+
+    monkeypatch.setattr(session, "loaded", broken)
+    said = refused(["run", "ring", "--out", str(tmp_path / "out")], capsys, code=1)
+    assert "ZeroDivisionError: first second" in said and "SIZEVIZ_DEBUG=1" in said
+    assert not (tmp_path / "out").exists()
+
+
+def test_ctrl_c_leaves_nothing(tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    from sizeviz.cli import session
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(session, "loaded", interrupted)
+    assert "stopped" in refused(["run", "ring", "--out", str(tmp_path / "out")], capsys, code=1)
+    assert not (tmp_path / "out").exists()
