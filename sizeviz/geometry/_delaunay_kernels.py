@@ -250,13 +250,32 @@ def real(n_triangles, ghost, corner):
 
 
 @njit(nogil=True, cache=True)
-def collected(keep, corner, twin, locked, index):
-    """Return the kept triangles by the points' own numbers, their neighbours (-1: none), their locked edges."""
-    place = np.empty(len(keep), dtype=np.int32)
-    count = 0
+def _ranked(keep, corner, index):
+    """Return each kept triangle's place when sorted by its lowest point, -1 for the others, and their number."""
+    start = np.zeros(len(index) + 1, dtype=np.int32)
+    place = np.full(len(keep), -1, dtype=np.int32)
     for t in range(len(keep)):
-        place[t] = count if keep[t] else -1
-        count += keep[t]
+        if keep[t]:
+            lowest = min(index[corner[3 * t]], index[corner[3 * t + 1]], index[corner[3 * t + 2]])
+            place[t] = lowest
+            start[lowest + 1] += 1
+    for v in range(len(index)):
+        start[v + 1] += start[v]
+    for t in range(len(keep)):
+        if keep[t]:
+            lowest = place[t]
+            place[t] = start[lowest]
+            start[lowest] += 1
+    return place, start[len(index)]
+
+
+@njit(nogil=True, cache=True)
+def collected(keep, corner, twin, locked, index):
+    """Return the kept triangles by the points' own numbers, their neighbours (-1: none), their locked edges.
+
+    They come in the order of their lowest points, so that points sorted in space give triangles sorted in space.
+    """
+    place, count = _ranked(keep, corner, index)
     triangles = np.empty((count, 3), dtype=np.int32)
     neighbours = np.empty((count, 3), dtype=np.int32)
     lock = np.empty((count, 3), dtype=np.bool_)

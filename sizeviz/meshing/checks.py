@@ -1,0 +1,66 @@
+"""What every raw mesh must be before anyone sees it: quadrilaterals only, no hole, no overlap, the boundary kept."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sizeviz.errors import MeshingError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sizeviz.geometry import QuadMesh
+
+AREA_TOLERANCE = 1e-9
+"""Relative difference between the area of the elements and that inside the boundary edges."""
+
+
+def edges_of(quads: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Return the distinct edges ``(E, 2)``, lower node first, and how many quadrilaterals share each, ``(E,)``."""
+    ends = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1).astype(np.int64)
+    width = int(quads.max(initial=0)) + 1
+    keys, count = np.unique(ends[:, 0] * width + ends[:, 1], return_counts=True)
+    return np.column_stack([keys // width, keys % width]).astype(np.int32), count
+
+
+def verify(mesh: QuadMesh, required: NDArray[np.int32], bounding: NDArray[np.bool_], area: float) -> None:
+    """Check a mesh's topology and area.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+        The mesh.
+    required : (E, 2) int32
+        Edges that the mesh must have: the boundary's, and those along inner lines.
+    bounding : (E,) bool
+        Which of them lie on the boundary; no other edge may belong to one element only.
+    area : float
+        Area inside the boundary edges.
+
+    Raises
+    ------
+    MeshingError
+        If an edge is shared by more than two elements, an edge of the outline is missing, the mesh has another
+        boundary, a node is not used, or the elements' area is not that inside the boundary.
+    """
+    edges, count = edges_of(mesh.quads)
+    width = np.int64(mesh.n_points)
+    keys = edges[:, 0].astype(np.int64) * width + edges[:, 1]
+    wanted = np.sort(required, axis=1).astype(np.int64)
+    wanted_keys = wanted[:, 0] * width + wanted[:, 1]
+    faults = []
+    if (count > 2).any():
+        faults.append(f"{int((count > 2).sum())} edges are shared by more than two elements")
+    if not np.isin(wanted_keys, keys).all():
+        faults.append(f"{int((~np.isin(wanted_keys, keys)).sum())} edges of the outline are missing")
+    if not np.array_equal(np.sort(wanted_keys[bounding]), keys[count == 1]):
+        faults.append("the mesh's boundary is not the outline")
+    if len(np.unique(mesh.quads)) != mesh.n_points:
+        faults.append("a node belongs to no element")
+    covered = float(mesh.areas.sum())
+    if abs(covered - area) > AREA_TOLERANCE * abs(area):
+        faults.append(f"the elements cover an area of {covered:.12g} instead of {area:.12g}")
+    if faults:
+        raise MeshingError(f"no valid mesh was found: {'; '.join(faults)}; try another seed or a smaller mesh scale")

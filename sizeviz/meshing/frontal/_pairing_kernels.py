@@ -1,0 +1,161 @@
+"""Which triangles join to a quadrilateral: costs, belief propagation, and the first matching it gives.
+
+``twin[3t + i]`` is the place of the edge opposite corner i of triangle t as its neighbour counts it, -1 where the two
+may not be joined. Min-sum belief propagation for matchings: Bayati, Shah, Sharma (2008), "Max-product for maximum
+weight matching", DOI 10.1109/TIT.2007.915695.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+POOR = 0.6
+POOR_WEIGHT = 4.0
+FORBIDDEN = 20.0
+DAMPING = 0.5
+
+
+@njit(nogil=True, cache=True)
+def _corner_term(ux, uy, vx, vy):
+    """Return (|u|^2 + |v|^2) / (u x v), infinite where the corner is flat or inverted."""
+    det = ux * vy - uy * vx
+    if det <= 0.0:
+        return np.inf
+    return (ux * ux + uy * uy + vx * vx + vy * vy) / det
+
+
+@njit(nogil=True, cache=True)
+def quad_quality(ax, ay, bx, by, cx, cy, dx, dy):
+    """Return the harmonic mean over the corners of 2 det / (sum of squares), 0 where one is flat or inverted."""
+    total = _corner_term(bx - ax, by - ay, dx - ax, dy - ay)
+    total += _corner_term(cx - bx, cy - by, ax - bx, ay - by)
+    total += _corner_term(dx - cx, dy - cy, bx - cx, by - cy)
+    total += _corner_term(ax - dx, ay - dy, cx - dx, cy - dy)
+    return 8.0 / total
+
+
+@njit(nogil=True, cache=True)
+def joinable(neighbours, locked):
+    """Return the twin of each edge across which two triangles may be joined, -1 for the others."""
+    n = len(neighbours)
+    twin = np.full(3 * n, -1, dtype=np.int32)
+    for t in range(n):
+        for i in range(3):
+            u = neighbours[t, i]
+            if u < 0 or locked[t, i]:
+                continue
+            for j in range(3):
+                if neighbours[u, j] == t:
+                    twin[3 * t + i] = 3 * u + j
+    return twin
+
+
+@njit(nogil=True, cache=True)
+def _ripple(k):
+    """Return a tiny number that breaks ties, the same in every run."""
+    return ((k * 2654435761) & 0xFFFF0000) * (1e-4 / 2.0**32)
+
+
+@njit(nogil=True, cache=True)
+def pair_costs(start, stop, points, triangles, twin, cost):
+    """Fill the cost of joining across each edge whose first triangle is in a range; both its sides are filled."""
+    for t in range(start, stop):
+        for i in range(3):
+            e = 3 * t + i
+            g = twin[e]
+            if g < 0:
+                cost[e] = FORBIDDEN
+            elif g > e:
+                p, a, b = triangles[t, i], triangles[t, (i + 1) % 3], triangles[t, (i + 2) % 3]
+                q = triangles[g // 3, g % 3]
+                quality = quad_quality(
+                    points[p, 0], points[p, 1], points[a, 0], points[a, 1],
+                    points[q, 0], points[q, 1], points[b, 0], points[b, 1],
+                )  # fmt: skip
+                cost[e] = 1.0 - quality + POOR_WEIGHT * max(0.0, POOR - quality) + _ripple(e)
+                cost[g] = cost[e]
+
+
+@njit(nogil=True, cache=True)
+def _send(t, twin, cost, inbox, share):
+    """Send the messages of one triangle: the cost across each edge less the best it could do elsewhere."""
+    e = 3 * t
+    m0, m1, m2 = inbox[e], inbox[e + 1], inbox[e + 2]
+    g = twin[e]
+    if g >= 0:
+        inbox[g] += share * (cost[e] - min(m1, m2) - inbox[g])
+    g = twin[e + 1]
+    if g >= 0:
+        inbox[g] += share * (cost[e + 1] - min(m0, m2) - inbox[g])
+    g = twin[e + 2]
+    if g >= 0:
+        inbox[g] += share * (cost[e + 2] - min(m0, m1) - inbox[g])
+
+
+@njit(nogil=True, cache=True)
+def sweep(forwards, twin, cost, inbox):
+    """Let every triangle send its messages, in order or in reverse."""
+    n = len(twin) // 3
+    share = 1.0 - DAMPING
+    if forwards:
+        for t in range(n):
+            _send(t, twin, cost, inbox, share)
+    else:
+        for t in range(n - 1, -1, -1):
+            _send(t, twin, cost, inbox, share)
+
+
+@njit(nogil=True, cache=True)
+def _favourite(t, twin, score, mate):
+    """Return the edge across which a triangle would best join one that is free, or -1."""
+    best, least = -1, np.inf
+    for e in range(3 * t, 3 * t + 3):
+        g = twin[e]
+        if g >= 0 and mate[g // 3] < 0 and score[e] + score[g] < least:
+            best, least = e, score[e] + score[g]
+    return best
+
+
+@njit(nogil=True, cache=True)
+def joined_by_belief(twin, cost, inbox, mate):
+    """Join triangles that prefer each other, until no two free ones are neighbours."""
+    n = len(mate)
+    score = inbox - 0.5 * cost
+    active = np.arange(n).astype(np.int32)
+    n_active = n
+    while n_active > 0:
+        kept = 0
+        for k in range(n_active):
+            t = active[k]
+            if mate[t] >= 0:
+                continue
+            e = _favourite(t, twin, score, mate)
+            if e < 0:
+                continue
+            u = twin[e] // 3
+            if _favourite(u, twin, score, mate) == twin[e]:
+                mate[t], mate[u] = u, t
+            else:
+                active[kept] = t
+                kept += 1
+        n_active = kept
+
+
+@njit(nogil=True, cache=True)
+def quads_of(triangles, twin, mate):
+    """Return the quadrilaterals of a perfect matching, counter-clockwise."""
+    quads = np.empty((len(mate) // 2, 4), dtype=np.int32)
+    n = 0
+    for t in range(len(mate)):
+        if mate[t] > t:
+            for i in range(3):
+                g = twin[3 * t + i]
+                if g >= 0 and g // 3 == mate[t]:
+                    quads[n, 0] = triangles[t, i]
+                    quads[n, 1] = triangles[t, (i + 1) % 3]
+                    quads[n, 2] = triangles[g // 3, g % 3]
+                    quads[n, 3] = triangles[t, (i + 2) % 3]
+                    n += 1
+                    break
+    return quads[:n]

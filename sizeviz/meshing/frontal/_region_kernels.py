@@ -1,0 +1,74 @@
+"""Whether a point lies in the domain: a comparison in a rectangle, a walk through a triangulation elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from sizeviz.geometry._predicates_kernels import orient2d
+
+
+@njit(nogil=True, cache=True)
+def within(region, x, y, hint):
+    """Return whether a point lies strictly inside, and a hint for the next point nearby.
+
+    ``region`` is ``Region.arrays``: box, points, triangles, neighbours, inside.
+    """
+    box, triangles = region[0], region[2]
+    if not (box[0] < x < box[2] and box[1] < y < box[3]):
+        return False, hint
+    if len(triangles) == 0:
+        return True, hint
+    t = _triangle_at(region[1], triangles, region[3], x, y, hint)
+    return t >= 0 and region[4][t], max(t, 0)
+
+
+@njit(nogil=True, cache=True)
+def _triangle_at(points, triangles, neighbours, x, y, start):
+    """Walk to the triangle that holds a point; -1 where none does.
+
+    The edges are tried in a changing order, as a walk that always tries them in the same can run in circles where
+    the triangulation is constrained (Devillers, Pion, Teillaud 2002, DOI 10.1142/S0129054102001047).
+    """
+    t = start
+    turn = start + 1
+    while True:
+        turn = (turn * 1664525 + 1013904223) & 0xFFFFFFFF
+        first = (turn >> 16) % 3
+        onward = -2
+        for k in range(3):
+            i = (first + k) % 3
+            a, b = triangles[t, (i + 1) % 3], triangles[t, (i + 2) % 3]
+            if orient2d(points[a, 0], points[a, 1], points[b, 0], points[b, 1], x, y) < 0.0:
+                onward = neighbours[t, i]
+                break
+        if onward == -2:
+            return t
+        if onward < 0:
+            return -1
+        t = onward
+
+
+@njit(nogil=True, cache=True)
+def parity(neighbours, locked):
+    """Return which triangles an odd number of locked edges separates from the outside of the hull."""
+    n = len(neighbours)
+    depth = np.full(n, -1, dtype=np.int8)
+    stack = np.empty(n, dtype=np.int32)
+    top = 0
+    for t in range(n):
+        for i in range(3):
+            if neighbours[t, i] < 0 and depth[t] < 0:
+                depth[t] = locked[t, i]
+                stack[top] = t
+                top += 1
+    while top > 0:
+        top -= 1
+        t = stack[top]
+        for i in range(3):
+            u = neighbours[t, i]
+            if u >= 0 and depth[u] < 0:
+                depth[u] = depth[t] ^ np.int8(locked[t, i])
+                stack[top] = u
+                top += 1
+    return depth == 1

@@ -1,0 +1,228 @@
+"""Nodes inside a domain, at the distance that the size field asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sizeviz.errors import MeshingError
+from sizeviz.meshing.frontal import _hash_kernels as hashing
+from sizeviz.meshing.frontal import _packing_kernels as kernels
+from sizeviz.meshing.frontal import _seed_kernels as seeding
+from sizeviz.meshing.frontal.region import RegionArrays
+from sizeviz.monitor import SILENT, Monitor
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sizeviz.geometry import Domain
+    from sizeviz.meshing.frontal.boundary import Outline
+    from sizeviz.meshing.options import MeshOptions
+    from sizeviz.sizing import SizeField
+
+CHUNK = 20_000
+"""Points accepted, or quadtree leaves made, between two steps of the monitor: 20 to 40 ms."""
+
+STEEPEST = 1.5
+"""Slopes above this are treated as this: sizes that jump cannot be followed by a packing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seeds:
+    """Where a front may start: the leaves of a quadtree, and how many elements they ask for.
+
+    Parameters
+    ----------
+    rows : (K, 3) float64
+        Centre and size of each leaf inside the domain.
+    asked : float
+        Number of elements, the integral of 1 / (scale · size)².
+    """
+
+    rows: NDArray[np.float64]
+    asked: float
+
+
+def frame_angle(outline: Outline) -> float:
+    """Return the direction, in radians modulo a quarter turn, that most of the boundary runs along; 0 if none."""
+    step = outline.points[outline.edges[:, 1]] - outline.points[outline.edges[:, 0]]
+    length = np.hypot(*step.T)
+    mean = (length * np.exp(4j * np.arctan2(step[:, 1], step[:, 0]))).sum() / length.sum()
+    angle = np.angle(mean) / 4
+    return float(angle) if abs(mean) > 0.3 and abs(angle) > 1e-9 else 0.0
+
+
+def steepest(size: SizeField) -> float:
+    """Return the largest slope of the field, no more than ``STEEPEST``."""
+    background = size.background
+    return float(min(seeding.largest_slope(background.points, background.triangles, size.sizes), STEEPEST))
+
+
+def seeded(region: RegionArrays, size: SizeField, options: MeshOptions, monitor: Monitor = SILENT) -> Seeds:
+    """Return the leaves of a quadtree over the domain, each no larger than the size at its centre.
+
+    Parameters
+    ----------
+    region : tuple
+        ``region_arrays`` of the domain.
+    size : SizeField
+        Sizes.
+    options : MeshOptions
+        Scale, and the seed that shifts the quadtree.
+    monitor : Monitor
+        Progress and cancel.
+
+    Raises
+    ------
+    MeshingError
+        If the leaves ask for more than ``options.max_elements``.
+    """
+    box = region[0]
+    side = 1.01 * float(max(box[2] - box[0], box[3] - box[1]))
+    shift = np.random.default_rng(options.seed).uniform(-0.004, 0.004, 2) * side if options.seed else np.zeros(2)
+    stack = np.empty((seeding.STACK, 3))
+    stack[0] = (*(0.5 * (box[:2] + box[2:]) + shift), side)
+    depth, asked, slope = 1, 0.0, steepest(size)
+    hints, rows = np.zeros(2, dtype=np.int64), []
+    while depth:
+        out = np.empty((CHUNK, 3))
+        depth, count, more = seeding.leaves(CHUNK, size.sampler, region, options.scale, slope, stack, depth, out, hints)
+        rows.append(out[:count])
+        asked += more
+        if asked > options.max_elements:
+            raise MeshingError(
+                f"{size.label}: at mesh scale {options.scale:g} it asks for more than {options.max_elements} elements; "
+                "raise the smallest size, the mesh scale or the limit (--max-elements)"
+            )
+        monitor.step(1.0 - stack[:depth, 2].max(initial=0.0) / side, "counting elements")
+    return Seeds(np.vstack(rows), asked)
+
+
+def packed(
+    rim: Outline,
+    region: RegionArrays,
+    seeds: Seeds,
+    size: SizeField,
+    options: MeshOptions,
+    monitor: Monitor = SILENT,
+) -> NDArray[np.float64]:
+    """Return nodes ``(N, 2)``, those of the outline first, that lie about a size apart everywhere.
+
+    Parameters
+    ----------
+    rim : Outline
+        Nodes that must exist.
+    region, seeds
+        ``region_arrays`` of the domain, ``seeded`` in it.
+    size : SizeField
+        Sizes.
+    options : MeshOptions
+        Its scale.
+    monitor : Monitor
+        Progress and cancel.
+    """
+    at_rim = _rim_sizes(rim, size, options.scale)
+    front = _Front(rim, at_rim, region, seeds, size, options)
+    front.begin(rim, at_rim)
+    expected = 1.3 * seeds.asked + len(rim.points)
+    while not front.advanced():
+        monitor.step(min(front.n_points / expected, 1.0), "placing nodes")
+    return front.points[: front.n_points, :2].copy()
+
+
+class _Front:
+    """The arrays that the packing kernels work on, grown between two calls."""
+
+    def __init__(
+        self,
+        rim: Outline,
+        at_rim: NDArray[np.float64],
+        region: RegionArrays,
+        seeds: Seeds,
+        size: SizeField,
+        options: MeshOptions,
+    ) -> None:
+        finest = float(min(at_rim.min(), seeds.rows[:, 2].min(initial=np.inf)))
+        log_finest = float(np.log2(finest))
+        slope = steepest(size)
+        reach = 0.5 * kernels.CLOSE * np.sqrt(2.0) * slope
+        ratio = min((1.0 + reach) / max(1.0 - reach, 0.25), 4.0)
+        corner = region[0][:2] - 1e-3 * float((region[0][2:] - region[0][:2]).max())
+        self.setting = np.array([options.scale, *corner, frame_angle(rim), ratio, log_finest])
+        self.sampler, self.region = size.sampler, region
+        rows, starts = seeding.by_bucket(seeds.rows, log_finest)
+        self.seeds = (rows, starts, starts[:-1].copy())
+        capacity = int(1.3 * seeds.asked) + len(rim.points) + 2 * CHUNK
+        self.state = np.zeros(kernels.STATE_SIZE, dtype=np.int64)
+        self.state[kernels.FREE] = -1
+        self.points = np.empty((capacity, kernels.POINT_COLUMNS))
+        self.chain, self.layers = np.empty(capacity, dtype=np.int32), np.empty(capacity, dtype=np.uint8)
+        self.queue, self.links = np.empty((capacity, 4)), np.empty((capacity, 4), dtype=np.int32)
+        self.heads = np.full(kernels.N_BUCKETS, -1, dtype=np.int32)
+        self.tails = np.full(kernels.N_BUCKETS, -1, dtype=np.int32)
+        self.keys, self.values = hashing.rehashed(np.empty(0, np.uint64), np.empty(0, np.int32), 1 << 12)
+        self.cells = np.empty(0, dtype=np.int32)
+
+    @property
+    def n_points(self) -> int:
+        """Points accepted so far."""
+        return int(self.state[kernels.N_POINTS])
+
+    def begin(self, rim: Outline, at_rim: NDArray[np.float64]) -> None:
+        """Accept the outline's nodes, then let those on the boundary propose the first layer."""
+        self._reserve(len(rim.points))
+        kernels.begin(rim.points, at_rim, _turns(rim, self.setting[kernels.ANGLE]), *self._arrays())
+
+    def advanced(self) -> bool:
+        """Accept about ``CHUNK`` more points; return whether the domain is full."""
+        self._reserve(CHUNK)
+        return bool(kernels.advance(CHUNK, *self._arrays(), self.seeds))
+
+    def _arrays(self) -> tuple[object, ...]:
+        table = (self.keys, self.values, self.cells)
+        packing = (self.points, self.chain, self.layers)
+        queue = (self.queue, self.links, self.heads, self.tails)
+        return self.sampler, self.region, self.state, self.setting, table, packing, queue
+
+    def _reserve(self, more: int) -> None:
+        """Make room for ``more`` points, the blocks they may open and the proposals they make."""
+        self.points = _grown(self.points, self.n_points + more)
+        self.chain, self.layers = _grown(self.chain, self.n_points + more), _grown(self.layers, self.n_points + more)
+        queued = int(self.state[kernels.N_QUEUED]) + 4 * more
+        self.queue, self.links = _grown(self.queue, queued), _grown(self.links, queued)
+        blocks = int(self.state[kernels.N_BLOCKS]) + more
+        self.cells = _grown(self.cells, blocks * hashing.CELLS)
+        while len(self.keys) < 2 * blocks:
+            self.keys, self.values = hashing.rehashed(self.keys, self.values, 2 * len(self.keys))
+
+
+def _grown(array: NDArray, needed: int) -> NDArray:
+    """Return the array, or a copy of it in one at least half as long again."""
+    if len(array) >= needed:
+        return array
+    longer = np.empty((max(needed, 3 * len(array) // 2), *array.shape[1:]), dtype=array.dtype)
+    longer[: len(array)] = array
+    return longer
+
+
+def _rim_sizes(rim: Outline, size: SizeField, scale: float) -> NDArray[np.float64]:
+    """Return the spacing at each node of the outline: of its edges, or of the field where that is smaller."""
+    total, count = np.zeros(len(rim.points)), np.zeros(len(rim.points))
+    for k in range(2):
+        np.add.at(total, rim.edges[:, k], rim.lengths)
+        np.add.at(count, rim.edges[:, k], 1.0)
+    asked = scale * size.at(rim.points)
+    return np.where(count > 0, np.minimum(total / np.maximum(count, 1.0), asked), asked)
+
+
+def _turns(rim: Outline, angle: float) -> NDArray[np.float64]:
+    """Return how far the frame at each node is turned from the common one so that it follows the outline."""
+    step = rim.points[rim.edges[:, 1]] - rim.points[rim.edges[:, 0]]
+    direction = np.exp(4j * (np.arctan2(step[:, 1], step[:, 0]) - angle))
+    mean = np.zeros(len(rim.points), dtype=np.complex128)
+    for k in range(2):
+        np.add.at(mean, rim.edges[:, k], direction)
+    turn = np.angle(mean) / 4
+    return np.where(np.abs(turn) > 1e-9, turn, 0.0)

@@ -1,0 +1,64 @@
+"""Raw all-quadrilateral meshes: the protocol of a generator, those there are, and the one call that runs them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from sizeviz.errors import InputError
+from sizeviz.meshing.frontal.generator import Frontal
+from sizeviz.meshing.options import MeshOptions
+from sizeviz.monitor import SILENT, Monitor
+
+if TYPE_CHECKING:
+    from sizeviz.geometry import Domain, QuadMesh
+    from sizeviz.sizing import SizeField
+
+
+class Generator(Protocol):
+    """Anything that makes a raw all-quadrilateral mesh of a domain by a size field."""
+
+    @property
+    def name(self) -> str:
+        """What the user calls it by."""
+
+    def generate(self, domain: Domain, size: SizeField, options: MeshOptions, monitor: Monitor = SILENT) -> QuadMesh:
+        """Return quadrilaterals only, not smoothed; see `generated`."""
+
+
+GENERATORS: dict[str, Generator] = {generator.name: generator for generator in (Frontal(),)}
+"""Generators by name."""
+
+
+def generated(
+    domain: Domain, size: SizeField, options: MeshOptions | None = None, monitor: Monitor = SILENT
+) -> QuadMesh:
+    """Return a raw all-quadrilateral mesh of a domain whose elements are as large as the field says.
+
+    Parameters
+    ----------
+    domain : Domain
+        What to mesh.
+    size : SizeField
+        Element sizes, already limited or preserved: sizes that jump cannot be followed.
+    options : MeshOptions, optional
+        Mesher, scale, seed, limit.
+    monitor : Monitor
+        Progress and cancel.
+
+    Returns
+    -------
+    QuadMesh
+        Quadrilaterals only; every edge belongs to at most two; the boundary and inner lines of the domain are kept
+        as edges. Some elements may be concave: smoothing mends them.
+
+    Raises
+    ------
+    InputError
+        If there is no generator of that name, or curves of the domain cross.
+    MeshingError
+        If the mesh would have more than ``options.max_elements`` elements, or no valid mesh was found.
+    """
+    chosen = options or MeshOptions()
+    if chosen.mesher not in GENERATORS:
+        raise InputError(f"mesher {chosen.mesher!r} is not known; choose one of {', '.join(sorted(GENERATORS))}")
+    return GENERATORS[chosen.mesher].generate(domain, size, chosen, monitor)
