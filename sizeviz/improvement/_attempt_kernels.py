@@ -125,7 +125,7 @@ def aim_elements(region, n, patch, aims):
 
 @compiled
 def relax(nodes, n, patch, aims, law, rails, star, hope):
-    """Sweep the nodes until they settle or ``hope``, the decrease still needed, is out of reach; return the decrease."""
+    """Sweep the nodes until they settle or the decrease hoped for is out of reach; return the decrease."""
     total = 0.0
     for s in range(SWEEPS):
         step = 0.0
@@ -141,7 +141,7 @@ def relax(nodes, n, patch, aims, law, rails, star, hope):
 @compiled
 def build(kind, code, arg, births, patch, topo, room):
     """Fill old, new and spots of ``room`` for one operation; return their lengths."""
-    ideal, guard, boundary = topo
+    guard, boundary = topo[1], topo[2]
     old, new, spots, work = room[0], room[1], room[2], room[3]
     if kind == DOUBLET:
         return build_doublet(code, patch, old, new)
@@ -200,9 +200,8 @@ def attempt(kind, code, arg, change, patch, topo, marks, aims, rails, law, room,
     ``room`` is (old, new, spots, fan room, slots, core, nodes, region, births, star, kept, free nodes, free elements,
     region afterwards); ``tops`` is (free nodes left, free elements left, stamp, ...).
     """
-    old, new, spots, slots, core, nodes, region, births, star, kept = (
-        room[0], room[1], room[2], room[4], room[5], room[6], room[7], room[8], room[9], room[10],
-    )  # fmt: skip
+    old, new, spots, slots, core = room[0], room[1], room[2], room[4], room[5]
+    nodes, region, births, kept = room[6], room[7], room[8], room[10]
     for i in range(4):
         births[i] = room[11][tops[0] - 1 - i] if tops[0] > i else -1
     n_old, n_new, n_spots = build(kind, code, arg, births, patch, topo, room)

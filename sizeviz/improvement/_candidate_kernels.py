@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
-from sizeviz.improvement._cavity_kernels import fan
+import numpy as np
+
+from sizeviz.improvement._cavity_kernels import copy_row, fan
 from sizeviz.improvement._jit import compiled
 from sizeviz.improvement._operation_kernels import (
+    CLOCKWISE,
     COLLAPSE,
+    COUNTER,
     DOUBLET,
+    GAIN,
+    LOSS,
+    NONE,
     OPEN,
     PILLOW,
     ROTATE,
     SWAP,
     gain,
     hexagon,
+    inner_energy,
     node_energy,
 )
 
 MOST_CANDIDATES = 24
+IMPOSSIBLE = np.int64(1 << 20)
 
 
 @compiled
@@ -31,7 +40,7 @@ def offer(kind, code, arg, change, limit, found, n):
         return n
     last = min(n, len(found) - 1)
     for i in range(last, at, -1):
-        found[i] = found[i - 1]
+        copy_row(found, i - 1, found, i)
     found[at, 0], found[at, 1], found[at, 2], found[at, 3] = kind, code, arg, change
     return last + 1
 
@@ -43,10 +52,11 @@ def collapse_change(a, c, b, d, count, topo):
     if guard[c]:
         a, c = c, a
     if guard[c]:
-        return 1 << 20
-    merged = node_energy(count[a] + count[c] - 2, ideal[a], boundary[a])
-    before = node_energy(count[a], ideal[a], boundary[a]) + node_energy(count[c], ideal[c], boundary[c])
-    return merged - before + gain(b, -1, count, ideal, boundary) + gain(d, -1, count, ideal, boundary)
+        return IMPOSSIBLE
+    n_a, n_c, wanted = np.int64(count[a]), np.int64(count[c]), np.int64(ideal[a])
+    merged = node_energy(n_a + n_c - 2, wanted, boundary[a])
+    before = node_energy(n_a, wanted, boundary[a]) + inner_energy(n_c)
+    return merged - before + gain(b, LOSS, count, ideal, boundary) + gain(d, LOSS, count, ideal, boundary)
 
 
 @compiled
@@ -55,11 +65,11 @@ def swap_change(code, turn, patch, topo):
     ideal, guard, boundary = topo
     other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
     if other < 0 or (guard[v] and guard[w]):
-        return 1 << 20
-    s, t = (y1, x1) if turn == 0 else (y2, x2)
+        return IMPOSSIBLE
+    s, t = (y1, x1) if turn == CLOCKWISE else (y2, x2)
     count = patch[3]
-    change = gain(v, -1, count, ideal, boundary) + gain(w, -1, count, ideal, boundary)
-    return change + gain(s, 1, count, ideal, boundary) + gain(t, 1, count, ideal, boundary)
+    change = gain(v, LOSS, count, ideal, boundary) + gain(w, LOSS, count, ideal, boundary)
+    return change + gain(s, GAIN, count, ideal, boundary) + gain(t, GAIN, count, ideal, boundary)
 
 
 @compiled
@@ -70,9 +80,9 @@ def offer_collapses(v, m, patch, topo, work, limit, found, n):
     for j in range(m):
         code = codes[j]
         change = collapse_change(v, across[j], nodes[j], nodes[j + 1], count, topo)
-        n = offer(COLLAPSE, code, 0, change, limit, found, n)
+        n = offer(COLLAPSE, code, NONE, change, limit, found, n)
         change = collapse_change(nodes[j], nodes[j + 1], v, across[j], count, topo)
-        n = offer(COLLAPSE, (code & ~3) | ((code + 1) & 3), 0, change, limit, found, n)
+        n = offer(COLLAPSE, (code & ~3) | ((code + 1) & 3), NONE, change, limit, found, n)
     return n
 
 
@@ -82,27 +92,27 @@ def offer_swaps(m, patch, topo, work, limit, found, n):
     codes = work[2]
     for j in range(m):
         code = codes[j]
-        for turn in range(2):
+        for turn in (CLOCKWISE, COUNTER):
             n = offer(SWAP, code, turn, swap_change(code, turn, patch, topo), limit, found, n)
         after = (code & ~3) | ((code + 1) & 3)
-        n = offer(SWAP, after, 1, swap_change(after, 1, patch, topo), limit, found, n)
+        n = offer(SWAP, after, COUNTER, swap_change(after, COUNTER, patch, topo), limit, found, n)
         after = (code & ~3) | ((code + 2) & 3)
-        n = offer(SWAP, after, 0, swap_change(after, 0, patch, topo), limit, found, n)
+        n = offer(SWAP, after, CLOCKWISE, swap_change(after, CLOCKWISE, patch, topo), limit, found, n)
     return n
 
 
 @compiled
 def offer_opens(v, m, patch, topo, work, limit, found, n):
     """Offer every split of an inner node that leaves at least two elements on each side."""
-    ideal, guard, boundary = topo
+    ideal, boundary = topo[0], topo[2]
     nodes, _, codes = work
     count = patch[3]
-    before = node_energy(m, 4, False)
+    before = inner_energy(m)
     for k in range(2, m // 2 + 1):
-        split = node_energy(k + 1, 4, False) + node_energy(m - k + 1, 4, False) - before
+        split = inner_energy(k + 1) + inner_energy(m - k + 1) - before
         for j in range(m if 2 * k < m else k):
-            change = split + gain(nodes[j], 1, count, ideal, boundary)
-            change += gain(nodes[(j + k) % m], 1, count, ideal, boundary)
+            change = split + gain(nodes[j], GAIN, count, ideal, boundary)
+            change += gain(nodes[(j + k) % m], GAIN, count, ideal, boundary)
             n = offer(OPEN, codes[j], k, change, limit, found, n)
     return n
 
@@ -121,19 +131,19 @@ def candidates(v, patch, topo, work, limit, found):
     if m < 1:
         return 0
     if m == 2 and not guard[v]:
-        change = gain(nodes[0], -1, count, ideal, boundary) + gain(nodes[1], -1, count, ideal, boundary)
-        return offer(DOUBLET, codes[0], 0, change - node_energy(2, ideal[v], False), limit, found, 0)
-    n = offer_collapses(v, m, patch, topo, work, limit, found, 0)
+        change = gain(nodes[0], LOSS, count, ideal, boundary) + gain(nodes[1], LOSS, count, ideal, boundary)
+        return offer(DOUBLET, codes[0], NONE, change - inner_energy(m), limit, found, NONE)
+    n = offer_collapses(v, m, patch, topo, work, limit, found, NONE)
     n = offer_swaps(m, patch, topo, work, limit, found, n)
     if not guard[v]:
         n = offer_opens(v, m, patch, topo, work, limit, found, n)
-        change = 0
+        change = NONE
         for j in range(m):
-            change += gain(nodes[j], -1, count, ideal, boundary) + gain(across[j], 1, count, ideal, boundary)
-        n = offer(ROTATE, codes[0], 0, change, limit, found, n)
+            change += gain(nodes[j], LOSS, count, ideal, boundary) + gain(across[j], GAIN, count, ideal, boundary)
+        n = offer(ROTATE, codes[0], NONE, change, limit, found, n)
     if m == 1 and boundary[v] and ideal[v] > 1:
-        change = 4 * node_energy(3, 4, False) + gain(v, 1, count, ideal, boundary)
+        change = 4 + gain(v, GAIN, count, ideal, boundary)
         for w in (nodes[0], across[0], nodes[1]):
-            change += gain(w, 1, count, ideal, boundary)
-        n = offer(PILLOW, codes[0], 0, change, limit, found, n)
+            change += gain(w, GAIN, count, ideal, boundary)
+        n = offer(PILLOW, codes[0], NONE, change, limit, found, n)
     return n

@@ -104,13 +104,20 @@ def exchange(old, n_old, new, n_new, slots, patch):
 
 
 @compiled
+def copy_row(source, i, target, j):
+    """Copy row i of one table to row j of another of the same width."""
+    for k in range(source.shape[1]):
+        target[j, k] = source[i, k]
+
+
+@compiled
 def save_links(old, n_old, core, n_core, patch, kept):
     """Copy what ``exchange`` is about to change; ``kept`` is (element rows, adjacency rows, counts)."""
     _, quads, ring, count = patch
     for i in range(n_old):
-        kept[0][i] = quads[old[i]]
+        copy_row(quads, old[i], kept[0], i)
     for i in range(n_core):
-        kept[1][i] = ring[core[i]]
+        copy_row(ring, core[i], kept[1], i)
         kept[2][i] = count[core[i]]
 
 
@@ -121,7 +128,7 @@ def restore_links(old, n_old, core, n_core, slots, n_new, patch, kept):
     for i in range(n_new):
         quads[slots[i], 0] = -1
     for i in range(n_old):
-        quads[old[i]] = kept[0][i]
+        copy_row(kept[0], i, quads, old[i])
     for i in range(n_core):
-        ring[core[i]] = kept[1][i]
+        copy_row(kept[1], i, ring, core[i])
         count[core[i]] = kept[2][i]

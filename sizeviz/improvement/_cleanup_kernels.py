@@ -6,7 +6,7 @@ import numpy as np
 
 from sizeviz.improvement._attempt_kernels import attempt
 from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates
-from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._jit import allocating, compiled
 
 MOST_VISITS = 12
 """How often one node is taken from the queue in one pass, so that a pass ends."""
@@ -30,7 +30,7 @@ def seed_queue(first, last, patch, topo, marks, queue, queued, visits, tops):
             enqueue(v, queue, queued, tops)
 
 
-@compiled
+@allocating
 def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room, tops, queue, queued, visits):
     """Visit up to ``budget`` queued nodes and apply at each the first operation that stands; return how many did.
 

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._jit import allocating, compiled
 
 
 @compiled
@@ -68,7 +68,7 @@ def nearest_station(curves, c, x, y, first):
     return where, best, segment
 
 
-@compiled
+@allocating
 def project_nodes(curves, nodes, slide, xy, station, off):
     """Write the arc length of each of ``nodes`` on its curve and its squared distance from it."""
     hint = np.zeros(len(curves[3]), np.int64)

@@ -1,8 +1,15 @@
-"""How the kernels of this package are compiled."""
+"""How the kernels of this package are compiled.
+
+``_nrt=False`` leaves out the counting of references: a kernel then cannot make an array, and costs far less to
+compile and to call with arrays.
+"""
 
 from __future__ import annotations
 
 from numba import njit
 
-compiled = njit(nogil=True, cache=True, error_model="numpy")
-"""Decorator of a kernel: no GIL, cached on disk, and no check for division by zero in every quotient."""
+compiled = njit(nogil=True, cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
+"""Decorator of a kernel that makes no array: no GIL, cached on disk, no check for division by zero."""
+
+allocating = njit(nogil=True, cache=True, error_model="numpy")
+"""Decorator of a kernel that makes arrays of its own."""

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._jit import allocating, compiled
 
 HILBERT_LEVELS = 16
 
@@ -26,7 +26,7 @@ def hilbert_key(i, j, levels):
     return key
 
 
-@compiled
+@allocating
 def hilbert_keys(xy):
     """Return the Hilbert position of each point within the bounding box of all, ``(N,) int64``."""
     n = len(xy)
@@ -91,7 +91,7 @@ def mark_boundary(quads, ring, count, boundary):
                 boundary[w] = True
 
 
-@compiled
+@allocating
 def colour_blocks(size, quads, ring, count, colour):
     """Give each block of ``size`` consecutive nodes a colour that no block sharing an element with it has.
 
@@ -129,7 +129,7 @@ def ideal_counts(xy, quads, ring, count, boundary, ideal):
             n, p = quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
             ax, ay, bx, by = xy[n, 0] - xy[v, 0], xy[n, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
             angle += math.atan2(ax * by - ay * bx, ax * bx + ay * by)
-        ideal[v] = max(1, int(math.floor(angle / (0.5 * math.pi) + 0.5)))
+        ideal[v] = max(1, round(angle / (0.5 * math.pi)))
 
 
 @compiled

@@ -17,11 +17,16 @@ elements, new elements and spots; no old element means that the operation is imp
 
 from __future__ import annotations
 
+import numpy as np
+
 from sizeviz.improvement._cavity_kernels import fan
 from sizeviz.improvement._jit import compiled
 from sizeviz.improvement._mesh_kernels import find_next
 
-DOUBLET, COLLAPSE, SWAP, ROTATE, OPEN, PILLOW = 0, 1, 2, 3, 4, 5
+DOUBLET, COLLAPSE, SWAP, ROTATE, OPEN, PILLOW = (np.int64(kind) for kind in range(6))
+CLOCKWISE, COUNTER = np.int64(0), np.int64(1)
+LOSS, NONE, GAIN = np.int64(-1), np.int64(0), np.int64(1)
+"""Typed, as are the kinds, because a literal argument would make numba compile one more variant of a kernel."""
 DEGENERATE = 16
 """Extra energy of an inner node with two elements, and of a flat boundary node with one."""
 
@@ -37,15 +42,23 @@ def node_energy(count, ideal, boundary):
 
 
 @compiled
-def gain(v, change, count, ideal, boundary):
-    """Return the change of a node's energy when its number of elements changes."""
-    return node_energy(count[v] + change, ideal[v], boundary[v]) - node_energy(count[v], ideal[v], boundary[v])
+def inner_energy(count):
+    """Return the valence energy of an inner node."""
+    off = count - 4
+    return off * off if count > 2 else off * off + DEGENERATE
 
 
 @compiled
-def put(row, a, b, c, d):
-    """Write the corners of an element."""
-    row[0], row[1], row[2], row[3] = a, b, c, d
+def gain(v, change, count, ideal, boundary):
+    """Return the change of a node's energy when its number of elements changes."""
+    now, wanted = np.int64(count[v]), np.int64(ideal[v])
+    return node_energy(now + change, wanted, boundary[v]) - node_energy(now, wanted, boundary[v])
+
+
+@compiled
+def put(new, i, a, b, c, d):
+    """Write the corners of new element i."""
+    new[i, 0], new[i, 1], new[i, 2], new[i, 3] = a, b, c, d
 
 
 @compiled
@@ -62,7 +75,7 @@ def build_doublet(code, patch, old, new):
     if d == b:
         return 0, 0, 0
     old[0], old[1] = first >> 2, second >> 2
-    put(new[0], a, b, c, d)
+    put(new, np.int64(0), np.int64(a), np.int64(b), np.int64(c), np.int64(d))
     return 2, 1, 0
 
 
@@ -81,11 +94,11 @@ def touch(a, c, b, d, patch):
     for i in range(count[a]):
         for s in (1, 3):
             w = quads[ring[a, i] >> 2, ((ring[a, i] & 3) + s) & 3]
-            if w in (b, d):
+            if w == b or w == d:
                 continue
             for j in range(count[c]):
                 q, k = ring[c, j] >> 2, ring[c, j] & 3
-                if w in (quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]):
+                if w == quads[q, (k + 1) & 3] or w == quads[q, (k + 3) & 3]:
                     return True
     return False
 
@@ -121,13 +134,13 @@ def hexagon(code, patch):
     """Return the other element's number and the six nodes counter-clockwise from the edge's start, or -1."""
     _, quads, ring, count = patch
     q, k = code >> 2, code & 3
-    v, w = quads[q, k], quads[q, (k + 1) & 3]
-    x1, x2 = quads[q, (k + 2) & 3], quads[q, (k + 3) & 3]
-    other = find_next(w, v, quads, ring, count)
+    v, w = np.int64(quads[q, k]), np.int64(quads[q, (k + 1) & 3])
+    x1, x2 = np.int64(quads[q, (k + 2) & 3]), np.int64(quads[q, (k + 3) & 3])
+    other = np.int64(find_next(w, v, quads, ring, count))
     if other < 0:
-        return -1, v, v, v, w, x1, x2
+        return other, v, v, v, w, x1, x2
     p, s = other >> 2, other & 3
-    return p, v, quads[p, (s + 2) & 3], quads[p, (s + 3) & 3], w, x1, x2
+    return p, v, np.int64(quads[p, (s + 2) & 3]), np.int64(quads[p, (s + 3) & 3]), w, x1, x2
 
 
 @compiled
@@ -137,18 +150,18 @@ def build_swap(code, turn, patch, guard, old, new):
     other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
     if other < 0 or (guard[v] and guard[w]):
         return 0, 0, 0
-    s, t = (y1, x1) if turn == 0 else (y2, x2)
-    if s in (x1, x2) or t in (y1, y2):
+    s, t = (y1, x1) if turn == CLOCKWISE else (y2, x2)
+    if s == x1 or s == x2 or t == y1 or t == y2:
         return 0, 0, 0
     if find_next(s, t, quads, ring, count) >= 0 or find_next(t, s, quads, ring, count) >= 0:
         return 0, 0, 0
     old[0], old[1] = code >> 2, other
-    if turn == 0:
-        put(new[0], y1, y2, w, x1)
-        put(new[1], x1, x2, v, y1)
+    if turn == CLOCKWISE:
+        put(new, np.int64(0), y1, y2, w, x1)
+        put(new, np.int64(1), x1, x2, v, y1)
     else:
-        put(new[0], y2, w, x1, x2)
-        put(new[1], x2, v, y1, y2)
+        put(new, np.int64(0), y2, w, x1, x2)
+        put(new, np.int64(1), x2, v, y1, y2)
     return 2, 2, 0
 
 
@@ -156,7 +169,7 @@ def build_swap(code, turn, patch, guard, old, new):
 def build_rotate(code, patch, guard, boundary, old, new, work):
     """Exchange the edges and the diagonals around an inner node; ``work`` is the room of ``fan``."""
     quads = patch[1]
-    v = quads[code >> 2, code & 3]
+    v = np.int64(quads[code >> 2, code & 3])
     if guard[v]:
         return 0, 0, 0
     nodes, across, codes = work
@@ -165,7 +178,7 @@ def build_rotate(code, patch, guard, boundary, old, new, work):
         return 0, 0, 0
     for j in range(m):
         old[j] = codes[j] >> 2
-        put(new[j], v, across[j], nodes[j + 1], across[(j + 1) % m])
+        put(new, j, v, across[j], nodes[j + 1], across[(j + 1) % m])
     return m, m, 0
 
 
@@ -173,7 +186,7 @@ def build_rotate(code, patch, guard, boundary, old, new, work):
 def build_open(code, k, born, patch, guard, boundary, old, new, spots, work):
     """Split an inner node: ``born`` takes the elements beyond the ``k`` that begin at the corner."""
     xy, quads = patch[0], patch[1]
-    v = quads[code >> 2, code & 3]
+    v = np.int64(quads[code >> 2, code & 3])
     nodes, across, codes = work
     if guard[v] or born < 0:
         return 0, 0, 0
@@ -184,7 +197,7 @@ def build_open(code, k, born, patch, guard, boundary, old, new, spots, work):
     if m < 4 or first >= m or k < 2 or m - k < 2:
         return 0, 0, 0
     a, b = nodes[first], nodes[(first + k) % m]
-    put(new[0], a, v, b, born)
+    put(new, NONE, a, v, b, born)
     ux = uy = wx = wy = 0.0
     for j in range(m):
         i = (first + j) % m
@@ -216,7 +229,7 @@ def build_pillow(code, births, patch, old, new, spots):
         after = (k + 1) & 3
         spots[k, 0] = births[k]
         spots[k, 1], spots[k, 2] = 0.5 * (x + xy[quads[q, k], 0]), 0.5 * (y + xy[quads[q, k], 1])
-        put(new[k], quads[q, k], quads[q, after], births[after], births[k])
-    put(new[4], births[0], births[1], births[2], births[3])
+        put(new, k, np.int64(quads[q, k]), np.int64(quads[q, after]), births[after], births[k])
+    put(new, np.int64(4), births[0], births[1], births[2], births[3])
     old[0] = q
     return 1, 5, 4

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._jit import allocating, compiled
 from sizeviz.improvement._star_kernels import STAR_COLUMNS, node_step
 from sizeviz.sizing._kernels import size_at
 
 
-@compiled
+@allocating
 def sweep_blocks(first, last, blocks, size, patch, inv, bound, law, rails, gain):
     """Move every node of blocks[first:last] once, in order; ``gain[b]`` receives the objective's decrease."""
     star = np.empty((patch[2].shape[1], STAR_COLUMNS))

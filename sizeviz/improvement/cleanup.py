@@ -15,6 +15,7 @@ from sizeviz.improvement import _cleanup_kernels, _mesh_kernels
 from sizeviz.improvement._cavity_kernels import MOST_CORE, MOST_ELEMENTS
 from sizeviz.improvement._star_kernels import STAR_COLUMNS
 from sizeviz.improvement._workspace import Workspace, longer
+from sizeviz.improvement.options import SmoothOptions
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.threads import run_chunks
 
