@@ -67,7 +67,7 @@ def test_help_imports_nothing_heavy() -> None:
     assert not loaded & {"numpy", "numba", "scipy", "vtkmodules", "pyvista", "matplotlib", "PyQt5"}
 
 
-def test_defaults_are_the_librarys() -> None:
+def test_defaults_are_those_of_the_library() -> None:
     assert study_options(PipelineOptions()) == StudyOptions()
     assert study_options(FieldOptions()) == StudyOptions()
 
