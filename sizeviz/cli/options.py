@@ -19,7 +19,7 @@ MethodName = Literal["none", "gradient-limiting", "size-preserving"]
 DistanceName = Literal["euclidean", "edges"]
 """How far apart two places are: straight, or along edges of the background mesh."""
 
-MesherName = Literal["frontal", "gmsh"]
+MesherName = Literal["frontal", "decomposition", "gmsh"]
 """Who makes the raw mesh."""
 
 MeasureName = Literal["mean-edge", "sqrt-area", "max-edge"]

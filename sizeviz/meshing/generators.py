@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from sizeviz.errors import InputError
+from sizeviz.meshing.decomposition import Decomposition
 from sizeviz.meshing.frontal.generator import Frontal
+from sizeviz.meshing.gmsh import GmshGenerator
 from sizeviz.meshing.options import MeshOptions
 from sizeviz.monitor import SILENT, Monitor
 
@@ -25,7 +27,9 @@ class Generator(Protocol):
         """Return quadrilaterals only, not smoothed; see `generated`."""
 
 
-GENERATORS: dict[str, Generator] = {generator.name: generator for generator in (Frontal(),)}
+_ALL: tuple[Generator, ...] = (Frontal(), Decomposition(), GmshGenerator())
+
+GENERATORS: dict[str, Generator] = {generator.name: generator for generator in _ALL}
 """Generators by name."""
 
 

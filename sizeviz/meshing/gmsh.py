@@ -21,6 +21,7 @@ from sizeviz.errors import MeshingError, MissingDependencyError
 from sizeviz.geometry import QuadMesh
 from sizeviz.meshing.leftovers import merged
 from sizeviz.monitor import SILENT, Monitor
+from sizeviz.sizing import ideal_count
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,10 +68,11 @@ class GmshGenerator:
         MissingDependencyError
             If gmsh is not installed.
         MeshingError
-            If Gmsh fails, or leaves triangles that cannot be merged.
+            If Gmsh fails, leaves triangles that cannot be merged, or would make more than ``options.max_elements``.
         Cancelled
             If the monitor says so; the other process is ended at once.
         """
+        _require_room(domain, size, options)
         found = self.answer(domain, size, options, monitor)
         quads = merged(found["points"], found["triangles"], found["quads"])
         return _packed(domain, found["points"], quads, found["curve"])
@@ -113,6 +115,15 @@ class GmshGenerator:
             "grid_frame": np.array([grid.x0, grid.y0, 0.0, grid.dx, grid.dy, 1.0]),
             "grid_counts": np.array([grid.nx, grid.ny, 1], dtype=np.int32),
         }
+
+
+def _require_room(domain: Domain, size: SizeField, options: MeshOptions) -> None:
+    asked = ideal_count(size, domain) / options.scale**2
+    if asked > options.max_elements:
+        raise MeshingError(
+            f"{size.label}: at mesh scale {options.scale:g} it asks for about {asked:,.0f} elements, more than "
+            f"{options.max_elements:,}; raise the sizes, --mesh-scale or --max-elements"
+        )
 
 
 def _run(command: list[str], monitor: Monitor) -> None:

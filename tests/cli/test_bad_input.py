@@ -102,7 +102,7 @@ OPTIONS = {
     "method": (["--mesher", "magic"], "magic"),
     "measure": (["--measure", "volume"], "volume"),
     "unknown option": (["--speed", "high"], "--speed"),
-    "too many elements": (["--max-elements", "10"], "10"),
+    "no elements": (["--max-elements", "0"], "max_elements is 0"),
     "domain missing": (["--domain", "none.csv"], "none.csv"),
 }
 
@@ -113,6 +113,13 @@ def test_options_that_make_no_sense(case: str, tmp_path: Path, capsys: pytest.Ca
     out = tmp_path / "out"
     said = refused(["compare", "expr:0.1 + 0.1*x", "--out", str(out), *typed], capsys)
     assert words in said
+    assert not out.exists()
+
+
+def test_a_mesh_too_large_is_not_begun(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    out = tmp_path / "out"
+    said = refused(["run", "expr:0.01 + 0.1*x", "--out", str(out), "--max-elements", "10"], capsys, code=1)
+    assert "10" in said and "elements" in said
     assert not out.exists()
 
 

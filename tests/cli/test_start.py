@@ -7,13 +7,15 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 import sizeviz
 from sizeviz.cli import run_command_line
 from sizeviz.cli.app import COMMANDS
-from sizeviz.cli.options import FieldOptions, PipelineOptions, study_options
+from sizeviz.cli.options import FieldOptions, MesherName, PipelineOptions, study_options
+from sizeviz.meshing import GENERATORS
 from sizeviz.study import StudyOptions
 
 
@@ -70,6 +72,10 @@ def test_help_imports_nothing_heavy() -> None:
 def test_defaults_are_those_of_the_library() -> None:
     assert study_options(PipelineOptions()) == StudyOptions()
     assert study_options(FieldOptions()) == StudyOptions()
+
+
+def test_every_mesher_can_be_named() -> None:
+    assert set(get_args(MesherName)) == set(GENERATORS)
 
 
 def test_comparison_takes_one_over_alpha_unless_told_otherwise() -> None:

@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from sizeviz.errors import Cancelled, MissingDependencyError
+from sizeviz.errors import Cancelled, MeshingError, MissingDependencyError
 from sizeviz.geometry import Domain, QuadMesh
 from sizeviz.meshing import gmsh as backend
 from sizeviz.meshing.gmsh import GmshGenerator
@@ -112,6 +112,11 @@ def test_cancel_ends_the_other_process(monkeypatch: pytest.MonkeyPatch) -> None:
         GmshGenerator().generate(Domain.unit_square(), field(0.002, 0.004), MeshOptions(scale=1.0), stop)
     assert time.monotonic() - stop.asked < 0.2
     assert started[0].returncode == -9, "ended, not finished"
+
+
+def test_a_mesh_too_large_is_not_begun() -> None:
+    with pytest.raises(MeshingError, match="asks for about"):
+        GmshGenerator().generate(Domain.unit_square(), field(), MeshOptions(max_elements=100))
 
 
 def test_without_gmsh_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

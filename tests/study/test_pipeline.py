@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from study.cases import valley_source
 
-from sizeviz.errors import Cancelled, InputError
+from sizeviz.errors import Cancelled, InputError, MeshingError
 from sizeviz.meshing import MeshOptions
 from sizeviz.sizing import LimitOptions, PreserveOptions, limited, preserved
 from sizeviz.study import COMPARED, METHODS, Study, StudyOptions, processed, run
@@ -113,7 +113,7 @@ def test_an_unknown_method_names_the_known_ones() -> None:
 
 def test_too_many_elements_are_refused_before_meshing() -> None:
     options = StudyOptions(mesh=MeshOptions(max_elements=50))
-    with pytest.raises(InputError, match="50"):
+    with pytest.raises(MeshingError, match="50"):
         run(Study(valley_source(17), options), ("size-preserving",))
 
 
