@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtGui import QKeySequence
 
-from sizeviz.app.qt import QAction
+from sizeviz.app.qt import QAction, QActionGroup
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -58,10 +58,10 @@ COMMANDS: tuple[Command, ...] = (
     Command("brush-at-most", "Brush: at most", "Paint", "Alt+3"),
     Command("brush-smooth", "Brush: smooth", "Paint", "Alt+4"),
     Command("brush-erase", "Brush: erase to original", "Paint", "Alt+5"),
-    Command("panes-1", "One pane", "View", "Ctrl+1"),
-    Command("panes-2", "Two panes", "View", "Ctrl+2"),
-    Command("panes-3", "Three panes", "View", "Ctrl+3"),
-    Command("panes-4", "Four panes", "View", "Ctrl+4"),
+    Command("panes-1", "One pane", "View", "Ctrl+1", True),
+    Command("panes-2", "Two panes", "View", "Ctrl+2", True),
+    Command("panes-3", "Three panes", "View", "Ctrl+3", True),
+    Command("panes-4", "Four panes", "View", "Ctrl+4", True),
     Command("link", "Link cameras", "View", "L", True),
     Command("shared-range", "Share colour ranges", "View", "R", True),
     Command("swap", "Swap the first two panes", "View", "X"),
@@ -105,6 +105,9 @@ class Actions:
                 action.setToolTip(f"{command.title} ({shown})")
             window.addAction(action)
             self._actions[command.name] = action
+        panes = QActionGroup(window)  # exactly one of them is on
+        for count in (1, 2, 3, 4):
+            panes.addAction(self._actions[f"panes-{count}"])
 
     def __getitem__(self, name: str) -> QAction:
         return self._actions[name]

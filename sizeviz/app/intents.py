@@ -72,8 +72,13 @@ def connect_actions(window: MainWindow) -> None:
     for mode in window.paint.modes:
         on(f"brush-{mode}", lambda mode=mode: window.paint.set_mode(mode))
     for count in (1, 2, 3, 4):
-        on(f"panes-{count}", lambda count=count: board.set_count(count))
-    for name, state in (("link", board.linked), ("shared-range", board.shared_range), ("theme", window.theme.dark)):
+        on(f"panes-{count}", lambda on, count=count: board.set_count(count) if on else None)
+    for name, state in (
+        ("panes-2", True),
+        ("link", board.linked),
+        ("shared-range", board.shared_range),
+        ("theme", window.theme.dark),
+    ):
         window.actions_[name].setChecked(state)
     on("link", board.set_linked)
     on("shared-range", board.set_shared_range)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from qtpy.QtGui import QColor, QPalette
@@ -53,6 +54,9 @@ DARK = Theme(
     "#6aa9e6", "#0d1116", "#22344a", "#5ec99a", "#ff9a5a", "#e5b64a",
 )  # fmt: skip
 
+ICONS = (Path(__file__).parent / "icons").as_posix()
+"""Folder of the small pictures that the style sheet names."""
+
 THEMES = {"light": LIGHT, "dark": DARK}
 """The themes by name."""
 
@@ -95,7 +99,7 @@ def style_sheet(theme: Theme) -> str:
     for name in ("window", "panel", "raised", "border", "text", "muted", "accent", "on_accent", "tint", "good", "bad",
                  "warn"):  # fmt: skip
         sheet = sheet.replace(f"@{name};", f"{getattr(theme, name)};")
-    return sheet
+    return sheet.replace("@icons", ICONS)
 
 
 _SHEET = """
@@ -131,7 +135,15 @@ QLineEdit, QDoubleSpinBox, QSpinBox, QComboBox, QPlainTextEdit {
 QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus, QComboBox:focus, QPlainTextEdit:focus { border-color: @accent; }
 QLineEdit[invalid="true"], QDoubleSpinBox[invalid="true"] { border-color: @bad; }
 QComboBox { padding-right: 22px; }
-QComboBox::drop-down { border: none; width: 20px; }
+QComboBox::drop-down { border: none; width: 22px; }
+QComboBox::down-arrow, QSpinBox::down-arrow, QDoubleSpinBox::down-arrow { image: url(@icons/down.svg); width: 11px;
+  height: 11px; }
+QSpinBox::up-arrow, QDoubleSpinBox::up-arrow { image: url(@icons/up.svg); width: 11px; height: 11px; }
+QSpinBox, QDoubleSpinBox { padding-right: 17px; }
+QSpinBox::up-button, QDoubleSpinBox::up-button { subcontrol-position: top right; border: none; width: 17px; }
+QSpinBox::down-button, QDoubleSpinBox::down-button { subcontrol-position: bottom right; border: none; width: 17px; }
+QComboBox:disabled, QSpinBox:disabled, QDoubleSpinBox:disabled, QLineEdit:disabled { color: @muted;
+  background: @panel; }
 QComboBox QAbstractItemView { background: @raised; border: 1px solid @border; selection-background-color: @tint;
   selection-color: @text; outline: none; padding: 3px; }
 QCheckBox { spacing: 8px; }
@@ -153,7 +165,12 @@ QMainWindow::separator { background: @border; width: 1px; height: 1px; }
 QFrame#pane { background: @raised; border: 1px solid @border; border-radius: 8px; }
 QFrame#pane[active="true"] { border: 1px solid @accent; }
 QFrame#section { background: @panel; border: none; border-bottom: 1px solid @border; }
-QToolButton#sectionHead { font-weight: 600; padding: 9px 12px; border-radius: 0; text-align: left; }
+QToolButton#sectionHead { font-weight: 600; padding: 9px 12px; border: 1px solid transparent; border-radius: 0;
+  text-align: left; }
+QToolButton#sectionHead:checked { background: transparent; color: @text; }
+QToolButton#sectionHead:hover { background: @tint; }
+QToolButton#sectionHead:focus { border-color: @accent; }
+QSplitter, QSplitter > QWidget { background: @panel; }
 QFrame#card { background: @raised; border: 1px solid @border; border-radius: 8px; }
 QFrame#popup { background: @raised; border: 1px solid @border; border-radius: 10px; }
 QFrame#toast { background: @raised; border: 1px solid @border; border-left: 4px solid @accent; border-radius: 8px; }
@@ -177,6 +194,7 @@ QTabBar::tab:selected { color: @text; border-bottom-color: @accent; }
 QTabBar::tab:hover { color: @text; }
 QTabBar::tab:focus { color: @accent; }
 
+QTableView { font-size: 9pt; }
 QTableView, QListView, QUndoView { background: @raised; border: 1px solid @border; border-radius: 6px;
   gridline-color: transparent; alternate-background-color: @panel; selection-background-color: @tint;
   selection-color: @text; outline: none; }

@@ -50,10 +50,10 @@ if TYPE_CHECKING:
     from sizeviz.app.panes.canvas import Canvas
     from sizeviz.study import Study
 
-SIDEBAR = 322
+SIDEBAR = 306
 """Width of the pipeline's panels, in device-independent pixels."""
 
-INSPECTOR = 380
+INSPECTOR = 372
 """Width of the judgement's panels."""
 
 
@@ -100,6 +100,9 @@ class MainWindow(QMainWindow):
         self.set_theme(self.theme)
         if not self.settings.restore_layout(self):
             self.resize(1500, 920)
+        for dock in (self.pipeline_dock, self.inspector_dock):
+            dock.hide()  # the welcome page stands alone
+        self.show_state()
 
     # -- building --------------------------------------------------------------------------------------------------
 
@@ -146,7 +149,7 @@ class MainWindow(QMainWindow):
         judge.setChildrenCollapsible(False)
         for panel in (self.statistics, *self.histograms, self.worst):
             judge.addWidget(panel)
-        judge.setSizes([300, 160, 160, 240])
+        judge.setSizes([362, 132, 132, 240])
         self.history = QUndoView(self.controller.store.stack)
         self.history.setEmptyLabel("As opened")
         self.history.setAccessibleName("History")
@@ -173,6 +176,8 @@ class MainWindow(QMainWindow):
         bar.setMovable(False)
         for name in ("open", "undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-2",
                      "panes-3", "panes-4"):  # fmt: skip
+            if name == "panes-2":
+                bar.addWidget(_quiet("  Panes"))
             if name:
                 bar.addAction(self.actions_[name])
             else:
@@ -207,7 +212,10 @@ class MainWindow(QMainWindow):
 
     def show_study(self, study: Study) -> None:
         """Bring panels and panes to a study."""
-        self.pages.setCurrentWidget(self.board)
+        if self.pages.currentWidget() is not self.board:
+            self.pages.setCurrentWidget(self.board)
+            self.pipeline_dock.show()
+            self.inspector_dock.show()
         self.setWindowTitle(f"{study.source.label} – sizeviz")
         self.source.show_source(study.source)
         for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):
@@ -273,3 +281,9 @@ class MainWindow(QMainWindow):
         self.board.dispose()
         self.closed.emit()
         super().closeEvent(event)
+
+
+def _quiet(words: str) -> QLabel:
+    label = QLabel(words)
+    label.setProperty("role", "muted")
+    return label

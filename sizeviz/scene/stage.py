@@ -39,14 +39,14 @@ class Stage:
 
     def shoot(self, spec: SceneSpec, camera: Camera2D, width: int, height: int) -> NDArray[np.uint8]:
         """Return the scene as ``(height, width, 3)`` pixels, times the oversampling."""
-        size = [width * self.oversampling, height * self.oversampling]
-        if list(self._plotter.window_size) != size:
-            self._plotter.window_size = size
+        # straight to VTK: pyvista's own setter draws once more
+        self._plotter.render_window.SetSize(width * self.oversampling, height * self.oversampling)
         self._renderer.show(spec)
         self._renderer.look(camera)
         if not self._ready:
             self._plotter.show(auto_close=False, interactive=False)
             self._ready = True
+        self._plotter.render()
         pixels: NDArray[np.uint8] = np.asarray(self._plotter.screenshot(return_img=True))
         return pixels[..., :3]
 

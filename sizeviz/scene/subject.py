@@ -7,16 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sizeviz.errors import InputError
+from sizeviz.scene.imaging import interpolation_errors
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from sizeviz.conformity import Measure, MeshReport
+    from sizeviz.files.image import Image
     from sizeviz.geometry import Domain, QuadMesh
     from sizeviz.scene.view import Quantity
     from sizeviz.sizing import SizeField
-    from sizeviz.sources import Image
     from sizeviz.study import Study
 
 METHOD_TITLES: dict[str, str] = {
@@ -73,7 +74,9 @@ class Subject:
         if self.mesh is None:
             return None
         if quantity == "error":
-            return None
+            if self.image is None or self.domain is None:
+                return None
+            return interpolation_errors(self.mesh, self.image, self.domain.bounds)
         if self.report is not None:
             return {"quality": self.report.quality, "size": self.report.sizes[measure]}.get(
                 quantity, self.report.ratios[measure]

@@ -66,7 +66,7 @@ class HistogramPanel(QWidget):
         self.plot.hideButtons()
         self.plot.setMinimumHeight(96)
         self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.plot.getPlotItem().getAxis("left").setStyle(showValues=False)
+        self.plot.hideAxis("left")
         self._bars: Any = None
         self.range = pyqtgraph.LinearRegionItem(brush=(214, 22, 133, 40), pen={"color": (214, 22, 133), "width": 2})
         self.range.setVisible(False)
@@ -88,10 +88,10 @@ class HistogramPanel(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        for side in ("left", "bottom"):
-            axis = self.plot.getPlotItem().getAxis(side)
-            axis.setPen(theme.border)
-            axis.setTextPen(theme.muted)
+        self.plot.setBackground(theme.panel)
+        axis = self.plot.getPlotItem().getAxis("bottom")
+        axis.setPen(theme.border)
+        axis.setTextPen(theme.muted)
 
     def show_subject(self, subject: Subject, method: str, view: ViewState) -> None:
         """Count a method's elements."""

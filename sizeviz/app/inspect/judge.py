@@ -66,7 +66,7 @@ class GridModel(QAbstractTableModel):
         """Return a column's head."""
         if orientation == Qt.Orientation.Horizontal and section < len(self.table.header):
             if role == Qt.ItemDataRole.DisplayRole:
-                return self.table.header[section]
+                return self.table.header[section].replace(" ", "\n")
             if role == Qt.ItemDataRole.TextAlignmentRole and section > 0:
                 return Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         return None
@@ -201,11 +201,12 @@ def _table_view(model: GridModel, name: str) -> QTableView:
     view.setModel(model)
     view.setAccessibleName(name)
     view.verticalHeader().hide()
-    view.verticalHeader().setDefaultSectionSize(25)
+    view.verticalHeader().setDefaultSectionSize(22)
     view.setShowGrid(False)
     view.setAlternatingRowColors(True)
     view.setWordWrap(False)
     view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
     view.setTabKeyNavigation(False)
+    view.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
     view.horizontalHeader().setHighlightSections(False)
     return view

@@ -79,7 +79,7 @@ FORMATS = {"CSV": as_csv, "Markdown": as_markdown, "LaTeX": as_latex}
 def _row_names(measure: Measure) -> tuple[str, ...]:
     words = MEASURE_TITLES[measure]
     return (
-        "Elements", "Nodes", "Ideal count", "Elements / ideal", f"Correct ({words})", f"Largest R ({words})",
+        "Elements", "Nodes", "Ideal count", "Elements / ideal", f"Correct, {words}", f"Largest R, {words}",
         "Quality, smallest", "Quality, mean", "Quality, deviation", "Irregular nodes", "Inverted", "Seconds",
     )  # fmt: skip
 

@@ -94,7 +94,8 @@ class LogNumber(QWidget):
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setRange(0, SLIDER_STEPS)
         self.slider.setPageStep(SLIDER_STEPS // 20)
-        self.spin.setFixedWidth(96)
+        self.spin.setFixedWidth(88)
+        self.slider.setMinimumWidth(50)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(9)
@@ -146,6 +147,7 @@ def number(value: float, low: float, high: float, decimals: int = 3) -> QDoubleS
     spin.setRange(low, high)
     spin.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
     spin.setKeyboardTracking(False)
+    spin.setMinimumWidth(60)  # not as wide as the largest number it could hold
     spin.setValue(value)
     return spin
 
@@ -155,6 +157,7 @@ def choice(entries: Sequence[tuple[str, object]]) -> QComboBox:
     box = QComboBox()
     for words, value in entries:
         box.addItem(words, value)
+    box.setMinimumWidth(60)
     return box
 
 

@@ -48,8 +48,10 @@ class SourcePanel(Form):
         self.nodes.setRange(3, 2049)
         self.nodes.setValue(257)
         self.nodes.setSuffix("²")
+        self.nodes.setFixedWidth(70)
         self.nodes.setAccessibleName("Canvas nodes along each side")
         self.size = number(0.05, 1e-4, 1.0, 4)
+        self.size.setFixedWidth(78)
         self.size.setAccessibleName("Canvas element size")
         self._lay_out()
 

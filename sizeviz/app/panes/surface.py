@@ -151,7 +151,9 @@ class Glass(QWidget):
         if mark.pinned and max(box.width(), box.height()) < 14:
             self._twice(painter, lambda: painter.drawEllipse(box.center(), 11.0, 11.0), 2.0)
         if mark.label:
-            self._draw_label(painter, box.center() + QPointF(max(0.5 * box.width(), 11.0) + 5, -8.0), mark.label)
+            width = QFontMetrics(self.font()).horizontalAdvance(mark.label) + 12.0
+            below = max(0.5 * box.height(), 11.0) + 9.0
+            self._draw_label(painter, box.center() + QPointF(-0.5 * width, below), mark.label)
 
     def _draw_path(self, painter: QPainter) -> None:
         line = QPolygonF([self._pixel(x, y) for x, y in self.path])
