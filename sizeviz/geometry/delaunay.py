@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -136,7 +136,7 @@ def _inserted(
 def _constrain(
     pairs: NDArray[np.int32],
     kinds: NDArray[np.uint8],
-    mesh: tuple[NDArray, NDArray, NDArray, NDArray, NDArray],
+    mesh: tuple[NDArray[Any], ...],
     count: int,
 ) -> None:
     """Recover the segments in place."""

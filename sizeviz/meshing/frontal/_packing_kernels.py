@@ -17,6 +17,7 @@ from sizeviz.sizing._kernels import size_at
 
 CLOSE = 0.7
 CLOSE_IN_FIRST_LAYER = 0.5
+CLEARANCE = 0.4
 DECAY = 0.9
 PER_OCTAVE = 4
 N_BUCKETS = 1024
@@ -67,10 +68,10 @@ def blocked(x, y, h, c, s, layer, setting, table, packing):
                 if block < 0:
                     continue
                 jx, jy = bx << BLOCK_BITS, by << BLOCK_BITS
-                if _near_in_block(
-                    block * CELLS, max(ix0 - jx, 0), min(ix1 - jx, BLOCK - 1), max(iy0 - jy, 0), min(iy1 - jy, BLOCK - 1),
-                    x, y, h, c, s, layer, cells, points, chain, layers,
-                ):  # fmt: skip
+                left, right = max(ix0 - jx, 0), min(ix1 - jx, BLOCK - 1)
+                low, high = max(iy0 - jy, 0), min(iy1 - jy, BLOCK - 1)
+                first = block * CELLS
+                if _near_in_block(first, left, right, low, high, x, y, h, c, s, layer, cells, points, chain, layers):
                     return True
     return False
 
@@ -128,9 +129,9 @@ def propose(p, hint, home, layer, sampler, region, state, setting, packing, wait
         slope = min(max((scale * far - h) / h, -0.9), 0.9)
         step = h / (1.0 - 0.5 * slope)
         qx, qy = x + step * c, y + step * s
-        inside, home = within(region, qx, qy, home)
+        size, hint = size_at(sampler, qx, qy, hint)
+        inside, home = within(region, qx, qy, CLEARANCE * scale * size, home)
         if inside:
-            size, hint = size_at(sampler, qx, qy, hint)
             _enqueue(qx, qy, scale * size, DECAY * turn, layer, hint, home, state, setting[LOG_FINEST], waiting)
         c, s = -s, c
 
@@ -143,7 +144,7 @@ def begin(rim, sizes, turns, sampler, region, state, setting, table, packing, wa
         accept(rim[i, 0], rim[i, 1], sizes[i], turns[i], 0, state, setting, table, packing)
     hint, home = 0, 0
     for i in range(len(rim)):
-        _, home = within(region, rim[i, 0], rim[i, 1], home)
+        _, home = within(region, rim[i, 0], rim[i, 1], 0.0, home)
         propose(i, hint, home, 1, sampler, region, state, setting, packing, waiting)
     state[BUCKET] = 0
 
@@ -151,8 +152,8 @@ def begin(rim, sizes, turns, sampler, region, state, setting, table, packing, wa
 @njit(nogil=True, cache=True)
 def _next(state, waiting, seeds):
     """Move to the first bucket that is not empty; return its first proposal, or -2 - (a seed), or -1 at the end."""
-    queue, links, heads, tails = waiting
-    rows, seed_bucket, seed_at = seeds
+    links, heads = waiting[1], waiting[2]
+    seed_bucket, seed_at = seeds[1], seeds[2]
     b = state[BUCKET]
     while b < N_BUCKETS:
         k = heads[b]

@@ -9,18 +9,32 @@ from sizeviz.geometry._predicates_kernels import orient2d
 
 
 @njit(nogil=True, cache=True)
-def within(region, x, y, hint):
-    """Return whether a point lies strictly inside, and a hint for the next point nearby.
+def within(region, x, y, gap, hint):
+    """Return whether a point lies inside, at least ``gap`` from the nearest edge, and a hint for the next point nearby.
 
-    ``region`` is ``Region.arrays``: box, points, triangles, neighbours, inside.
+    ``region`` is what ``region_arrays`` returned: box, points, triangles, neighbours, inside, locked.
     """
     box, triangles = region[0], region[2]
+    if len(triangles) == 0:
+        return box[0] + gap < x < box[2] - gap and box[1] + gap < y < box[3] - gap, hint
     if not (box[0] < x < box[2] and box[1] < y < box[3]):
         return False, hint
-    if len(triangles) == 0:
-        return True, hint
     t = _triangle_at(region[1], triangles, region[3], x, y, hint)
-    return t >= 0 and region[4][t], max(t, 0)
+    if t < 0:
+        return False, 0
+    return region[4][t] and _clear(region[1], triangles, region[5], t, x, y, gap), t
+
+
+@njit(nogil=True, cache=True)
+def _clear(points, triangles, locked, t, x, y, gap):
+    """Whether a point in triangle t is at least ``gap`` from those of its edges that are locked."""
+    for i in range(3):
+        if locked[t, i]:
+            a, b = triangles[t, (i + 1) % 3], triangles[t, (i + 2) % 3]
+            ux, uy = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
+            if ux * (y - points[a, 1]) - uy * (x - points[a, 0]) <= gap * np.sqrt(ux * ux + uy * uy):
+                return False
+    return True
 
 
 @njit(nogil=True, cache=True)

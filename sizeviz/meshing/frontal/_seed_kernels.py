@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from sizeviz.meshing.frontal._packing_kernels import N_BUCKETS, bucket_of
+from sizeviz.meshing.frontal._packing_kernels import CLEARANCE, N_BUCKETS, bucket_of
 from sizeviz.meshing.frontal._region_kernels import within
 from sizeviz.sizing._kernels import size_at
 
@@ -40,11 +40,13 @@ def leaves(most, sampler, region, scale, slope, stack, depth, out, hints):
                 stack[depth, 2] = half
                 depth += 1
             continue
-        inside, hints[1] = within(region, x, y, hints[1])
+        inside, hints[1] = within(region, x, y, 0.0, hints[1])
+        if inside:
+            asked += (side / size) ** 2
+            inside, hints[1] = within(region, x, y, CLEARANCE * size, hints[1])
         if inside:
             out[count, 0], out[count, 1], out[count, 2] = x, y, size
             count += 1
-            asked += (side / size) ** 2
     return depth, count, asked
 
 

@@ -74,7 +74,7 @@ def outline(domain: Domain, size: SizeField, scale: float) -> Outline:
     scale : float
         Element size asked for relative to the field.
     """
-    net = network(domain)
+    net = network(domain, size, scale)
     marches = [_march(domain.curves[piece.curve], piece.begin, piece.end, size, scale) for piece in net.pieces]
     counts = _counts(net, domain.curves, np.array([totals[-1] for _, totals in marches]))
     points, curve, fixed, edges, along = [net.points], [net.curve], [net.fixed], [], []

@@ -62,7 +62,7 @@ def _triangulation(
     """Return the outline, renumbered, and the triangulation of the packed nodes, sorted along a Hilbert curve."""
     monitor.step(0.0, "placing nodes on the boundary")
     rim = outline(domain, size, options.scale)
-    region = region_arrays(domain, rim.points, rim.edges[rim.bounding])
+    region = region_arrays(domain, rim)
     seeds = seeded(region, size, options, SubMonitor(monitor, 0.0, 0.2))
     nodes = packed(rim, region, seeds, size, options, SubMonitor(monitor, 0.2, 0.8))
     order = hilbert_order(nodes)

@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sizeviz.geometry import Curve, Domain
+    from sizeviz.sizing import SizeField
+
+STRAIGHT = 1e-9
+"""A vertex that turns by less than this (radians) need not be kept."""
 
 TOUCHING = 1e-9
 """Two things closer than this, relative to the domain's extent, touch."""
@@ -118,12 +122,18 @@ class _Nodes:
         return found
 
 
-def network(domain: Domain) -> Network:
-    """Return the domain's curves cut at their corners and wherever they meet lines or fixed points."""
+def network(domain: Domain, size: SizeField, scale: float) -> Network:
+    """Return the domain's curves cut at their corners and wherever they meet lines or fixed points.
+
+    A vertex is a node too where the segments beside it are longer than the elements: there the outline is a polygon
+    to be kept, not the sampling of a curve.
+    """
     x0, y0, x1, y1 = domain.bounds
     tolerance = TOUCHING * max(x1 - x0, y1 - y0)
     curves = domain.curves
     stops = _stops(curves, domain.fixed_points, tolerance)
+    for k, curve in enumerate(curves):
+        stops[k] += _long_vertices(curve, size, scale)
     nodes = _Nodes(tolerance)
     pieces: list[Piece] = []
     for c, (curve, cuts) in enumerate(zip(curves, stops, strict=True)):
@@ -146,7 +156,7 @@ def network(domain: Domain) -> Network:
 
 
 def unrolled(curve: Curve) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return vertices and arc lengths such that any stretch of the curve is one ascending range; twice round if closed."""
+    """Return vertices and arc lengths in which any stretch of a curve is one range: a closed curve goes round twice."""
     if not curve.closed:
         return curve.points, curve.stations
     points = np.vstack([curve.points, curve.points, curve.points[:1]])
@@ -190,12 +200,32 @@ def _stops(curves: tuple[Curve, ...], fixed: NDArray[np.float64], tolerance: flo
     return stops
 
 
-def _bends(curve: Curve) -> NDArray[np.float64]:
-    """Return where an inner line turns by more than a corner's angle."""
-    step = np.diff(curve.points, axis=0)
+def _turns(curve: Curve) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return arc length, unsigned turn and the shorter of the two segments beside it, but at open ends."""
+    points = np.vstack([curve.points[-1:], curve.points, curve.points[:1]]) if curve.closed else curve.points
+    step = np.diff(points, axis=0)
     cross = step[:-1, 0] * step[1:, 1] - step[:-1, 1] * step[1:, 0]
     turn = np.abs(np.arctan2(cross, (step[:-1] * step[1:]).sum(axis=1)))
-    return curve.stations[1:-1][turn > CORNER_ANGLE]
+    length = np.hypot(*step.T)
+    return curve.stations[:-1] if curve.closed else curve.stations[1:-1], turn, np.minimum(length[:-1], length[1:])
+
+
+def _bends(curve: Curve) -> NDArray[np.float64]:
+    """Return where an inner line turns by more than a corner's angle."""
+    stations, turn, _ = _turns(curve)
+    return stations[turn > CORNER_ANGLE]
+
+
+def _long_vertices(curve: Curve, size: SizeField, scale: float) -> list[float]:
+    """Return the vertices at which the curve turns and whose segments are longer than the elements there."""
+    stations, turn, length = _turns(curve)
+    at = np.flatnonzero(turn > STRAIGHT)
+    if not len(at):
+        return []
+    vertices = curve.points if curve.closed else curve.points[1:-1]
+    elements = length[at] / (scale * size.at(vertices[at]))
+    kept = elements > np.where(turn[at] > CORNER_ANGLE / 2, 0.3, 2.0)
+    return [float(s) for s in stations[at[kept]]]
 
 
 def _touches(curve: Curve, points: NDArray[np.float64], tolerance: float) -> list[float]:

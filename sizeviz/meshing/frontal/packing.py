@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,14 +11,13 @@ from sizeviz.errors import MeshingError
 from sizeviz.meshing.frontal import _hash_kernels as hashing
 from sizeviz.meshing.frontal import _packing_kernels as kernels
 from sizeviz.meshing.frontal import _seed_kernels as seeding
-from sizeviz.meshing.frontal.region import RegionArrays
 from sizeviz.monitor import SILENT, Monitor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sizeviz.geometry import Domain
     from sizeviz.meshing.frontal.boundary import Outline
+    from sizeviz.meshing.frontal.region import RegionArrays
     from sizeviz.meshing.options import MeshOptions
     from sizeviz.sizing import SizeField
 
@@ -198,7 +197,7 @@ class _Front:
             self.keys, self.values = hashing.rehashed(self.keys, self.values, 2 * len(self.keys))
 
 
-def _grown(array: NDArray, needed: int) -> NDArray:
+def _grown(array: NDArray[Any], needed: int) -> NDArray[Any]:
     """Return the array, or a copy of it in one at least half as long again."""
     if len(array) >= needed:
         return array

@@ -18,11 +18,8 @@ if TYPE_CHECKING:
 SWEEPS = 24
 """Rounds of messages; more change little."""
 
-REACHES = (60, 600, 6000)
-"""How many triangles a search for an alternating path may touch in each round; the last round has no limit."""
-
-CHUNK = 200
-"""Searches between two steps of the monitor."""
+LONGEST = 20_000
+"""How many triangles the search for one alternating path through blossoms may touch."""
 
 
 def paired(mesh: Triangulation, monitor: Monitor = SILENT) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -61,14 +58,16 @@ def paired(mesh: Triangulation, monitor: Monitor = SILENT) -> tuple[NDArray[np.i
 
 
 def _augment(twin: NDArray[np.int32], mate: NDArray[np.int32], monitor: Monitor) -> None:
-    """Join the free triangles along alternating paths, short ones first, as far as that is possible."""
+    """Join the free triangles along alternating paths, as far as that is possible."""
     n = len(mate)
-    work = np.zeros((n, matching.WORK_COLUMNS), dtype=np.int32)
-    work[:, : matching.OUTER] = -1
-    touched, queue = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-    for most in (*REACHES, n + 1):
-        free = np.flatnonzero(mate < 0).astype(np.int32)
-        for start in range(0, len(free), CHUNK):
-            stop = min(start + CHUNK, len(free))
-            matching.augment(start, stop, free, most, twin, mate, work, touched, queue)
-            monitor.step(0.8, "joining triangles")
+    root, parent, queue = (np.empty(n, dtype=np.int32) for _ in range(3))
+    dead = np.empty(n, dtype=np.bool_)
+    while matching.forest(twin, mate, root, parent, dead, queue):
+        monitor.step(0.8, "joining triangles")
+    free = np.flatnonzero(mate < 0).astype(np.int32)
+    if len(free):
+        work = np.zeros((n, matching.WORK_COLUMNS), dtype=np.int32)
+        work[:, : matching.OUTER] = -1
+        for k in range(len(free)):
+            matching.augment(k, k + 1, free, LONGEST, twin, mate, work, parent, queue)
+            monitor.step(0.9, "joining triangles")

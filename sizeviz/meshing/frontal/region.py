@@ -13,8 +13,11 @@ from sizeviz.meshing.frontal import _region_kernels as kernels
 
 if TYPE_CHECKING:
     from sizeviz.geometry import Domain
+    from sizeviz.meshing.frontal.boundary import Outline
 
-RegionArrays = tuple[NDArray, NDArray, NDArray, NDArray, NDArray]
+RegionArrays = tuple[
+    NDArray[np.float64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.bool_], NDArray[np.bool_]
+]
 
 
 def is_box(domain: Domain) -> bool:
@@ -24,22 +27,30 @@ def is_box(domain: Domain) -> bool:
     return not domain.holes and bool(on_side.all()) and domain.area == (x1 - x0) * (y1 - y0)
 
 
-def region_arrays(domain: Domain, points: NDArray[np.float64], edges: NDArray[np.int32]) -> RegionArrays:
-    """Return what ``_region_kernels.within`` asks: bounding box, points, triangles, neighbours, which are inside.
+def region_arrays(domain: Domain, rim: Outline) -> RegionArrays:
+    """Return what ``_region_kernels.within`` asks.
 
     Parameters
     ----------
     domain : Domain
-        For its box; a rectangle needs no triangles.
-    points : (B, 2) float64
-        Nodes on the boundary.
-    edges : (E, 2) int32
-        Boundary edges, closed loops.
+        For its box; a rectangle without inner lines needs no triangles.
+    rim : Outline
+        Nodes and edges on the boundary and on inner lines.
+
+    Returns
+    -------
+    tuple
+        Bounding box, points, triangles, neighbours, which triangles are inside, which of their edges are locked.
     """
     box = read_only(np.array(domain.bounds))
-    if is_box(domain):
+    if is_box(domain) and not domain.lines:
         none = read_only(np.empty((0, 3), dtype=np.int32))
-        return box, read_only(np.empty((0, 2))), none, none, read_only(np.empty(0, dtype=np.bool_))
-    hull = triangulated(points, edges, bounding=np.zeros(len(edges), dtype=bool))
-    inside = kernels.parity(hull.neighbours, hull.locked)
-    return box, hull.points, hull.triangles, hull.neighbours, read_only(inside)
+        flags = read_only(np.empty((0, 3), dtype=np.bool_))
+        return box, read_only(np.empty((0, 2))), none, none, read_only(np.empty(0, dtype=np.bool_)), flags
+    hull = triangulated(rim.points, rim.edges, bounding=np.zeros(len(rim.edges), dtype=bool))
+    ends = np.sort(hull.triangles[:, [[1, 2], [2, 0], [0, 1]]].astype(np.int64), axis=-1)
+    bounds = np.sort(rim.edges[rim.bounding].astype(np.int64), axis=1)
+    width = len(rim.points)
+    bounding = np.isin(ends[..., 0] * width + ends[..., 1], bounds[:, 0] * width + bounds[:, 1])
+    inside = kernels.parity(hull.neighbours, bounding & hull.locked)
+    return box, hull.points, hull.triangles, hull.neighbours, read_only(inside), hull.locked
