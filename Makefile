@@ -45,7 +45,7 @@ bench:
 
 screenshots:
 	@.ci/setup full
-	@$(BIN)/python screenshots/make.py
+	@set -e; for file in screenshots/make_*.py; do $(BIN)/python $$file; done
 
 setup:
 	@.ci/setup full

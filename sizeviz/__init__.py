@@ -10,10 +10,33 @@ from importlib import import_module
 __version__ = "0.1.0"
 
 _PUBLIC: dict[str, str] = {
-    "BackgroundMesh": "sizeviz.sizing",
     "Domain": "sizeviz.geometry",
     "QuadMesh": "sizeviz.geometry",
+    "BackgroundMesh": "sizeviz.sizing",
+    "LimitOptions": "sizeviz.sizing",
+    "PreserveOptions": "sizeviz.sizing",
     "SizeField": "sizeviz.sizing",
+    "limited": "sizeviz.sizing",
+    "preserved": "sizeviz.sizing",
+    "MeshReport": "sizeviz.conformity",
+    "judged": "sizeviz.conformity",
+    "MeshOptions": "sizeviz.meshing",
+    "generated": "sizeviz.meshing",
+    "SmoothOptions": "sizeviz.improvement",
+    "improved": "sizeviz.improvement",
+    "read_domain": "sizeviz.files",
+    "read_field": "sizeviz.files",
+    "read_mesh": "sizeviz.files",
+    "write_field": "sizeviz.files",
+    "write_mesh": "sizeviz.files",
+    "Source": "sizeviz.sources",
+    "examples": "sizeviz.sources",
+    "load": "sizeviz.sources",
+    "Study": "sizeviz.study",
+    "StudyOptions": "sizeviz.study",
+    "run": "sizeviz.study",
+    "save_comparison": "sizeviz.scene",
+    "save_picture": "sizeviz.scene",
 }
 
 __all__ = ["__version__", *sorted(_PUBLIC)]

@@ -9,7 +9,7 @@ import numpy as np
 from sizeviz.geometry import Domain
 from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sizing import BackgroundMesh, SizeField
-from sizeviz.sources import Source
+from sizeviz.sources.source import Source
 from sizeviz.study.pipeline import COMPARED, run
 from sizeviz.study.report import mesh_arrays
 from sizeviz.study.study import Study

@@ -6,7 +6,7 @@ import numpy as np
 
 from sizeviz.geometry import Domain
 from sizeviz.sizing import BackgroundMesh, SizeField
-from sizeviz.sources import Source
+from sizeviz.sources.source import Source
 
 
 def valley_source(n: int = 65, low: float = 0.015, high: float = 0.08) -> Source:

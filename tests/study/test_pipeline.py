@@ -35,7 +35,7 @@ def test_each_method_drives_the_mesher_with_its_own_field(study: Study) -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_meshes_are_sound(study: Study, method: str) -> None:
     mesh = study.runs[method].mesh
-    assert mesh.areas.min() > 0
+    assert study.runs[method].report.n_inverted == 0
     assert mesh.areas.sum() == pytest.approx(1.0, rel=1e-9)
     assert tuple(study.runs[method].seconds) == STAGES
 
@@ -86,7 +86,7 @@ def test_progress_grows_and_names_the_stages() -> None:
 
     run(Study(valley_source(17)), COMPARED, Recording())
     fractions = [fraction for fraction, _ in steps]
-    assert fractions == sorted(fractions)
+    assert np.diff(fractions).min() > -1e-12, "but for rounding, it never goes back"
     assert fractions[-1] == 1.0
     said = {message for _, message in steps}
     for stage in STAGES:
@@ -125,7 +125,7 @@ def test_report_has_the_promised_keys(study: Study) -> None:
         finished = study.runs[method]
         assert entry["n_quads"] == finished.mesh.n_quads
         assert entry["n_nodes"] == finished.mesh.n_points
-        assert entry["n_inverted"] == 0
+        assert entry["n_inverted"] == finished.report.n_inverted
         assert set(entry["correct_percent"]) == set(entry["max_ratio"]) == {"mean_edge", "sqrt_area", "max_edge"}
         assert set(entry["quality"]) == {"min", "max", "mean", "std"}
         assert set(entry["seconds"]) == {*STAGES, "total"}
