@@ -15,6 +15,7 @@ from sizeviz.app.qt import QShortcut
 from sizeviz.app.theme import DARK, LIGHT
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from sizeviz.app.window import MainWindow
@@ -217,5 +218,5 @@ def _zoom(window: MainWindow, factor: float) -> None:
     surface.move_camera(surface.camera.zoomed(factor, surface.camera.x, surface.camera.y))
 
 
-def _select(window: MainWindow, method: str, chosen: NDArray | None) -> None:
+def _select(window: MainWindow, method: str, chosen: NDArray[np.intp] | None) -> None:
     window.board.select(None if chosen is None else Selection(method, chosen))

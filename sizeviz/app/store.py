@@ -18,7 +18,7 @@ UNDO_LIMIT = 100
 """How many steps can be undone."""
 
 
-class _Step(QUndoCommand):  # type: ignore[misc]
+class _Step(QUndoCommand):
     """Replace study A by B. Results that arrive later are filed with the study they belong to."""
 
     def __init__(self, store: StudyStore, before: Study, after: Study, words: str, key: str) -> None:

@@ -12,6 +12,7 @@ from sizeviz.errors import InputError
 from sizeviz.scene.camera import Camera2D
 from sizeviz.scene.canvas import Box, Canvas, text_width
 from sizeviz.scene.compose import compose, scale_for, subject_bounds, values_of
+from sizeviz.scene.spec import CellLayer
 from sizeviz.scene.stage import Stage
 from sizeviz.scene.subject import subjects_of
 from sizeviz.scene.view import ViewState
@@ -271,5 +272,5 @@ def _kept_inside(camera: Camera2D, bounds: tuple[float, float, float, float]) ->
 
 
 def _with_edges(spec: SceneSpec) -> SceneSpec:
-    layers = tuple(replace(layer, edges=spec.ink) if layer.name == "elements" else layer for layer in spec.layers)
+    layers = tuple(replace(layer, edges=spec.ink) if isinstance(layer, CellLayer) else layer for layer in spec.layers)
     return replace(spec, layers=layers)

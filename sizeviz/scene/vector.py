@@ -113,7 +113,7 @@ def _image(axes: Any, layer: ImageLayer) -> None:
 def _lines(axes: Any, layer: LineLayer) -> None:
     from matplotlib.collections import LineCollection
 
-    lines = layer.points[layer.segments]
+    lines = list(layer.points[layer.segments])
     axes.add_collection(LineCollection(lines, colors=[_unit(layer.color)], linewidths=0.5 * layer.width, clip_on=False))
 
 

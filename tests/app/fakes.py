@@ -14,7 +14,7 @@ from sizeviz.errors import InputError
 from sizeviz.geometry import Domain
 from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sizing import BackgroundMesh, SizeField
-from sizeviz.sources import Source
+from sizeviz.sources.source import Source
 from sizeviz.study import MethodRun, Study, StudyOptions
 
 SCALES = {"none": 1.4, "gradient-limiting": 1.1, "size-preserving": 0.8}
@@ -84,9 +84,7 @@ class FakeEngine:
         run = MethodRun(target, mesh, mesh, fake_report(mesh, asked), {"mesh": done})
         return study.with_run(method, run)
 
-    def targets(
-        self, sizes: SizeField, options: StudyOptions, monitor: Monitor = SILENT
-    ) -> dict[str, SizeField]:
+    def targets(self, sizes: SizeField, options: StudyOptions, monitor: Monitor = SILENT) -> dict[str, SizeField]:
         self.calls.append("targets")
         return {
             "gradient-limiting": sizes.with_sizes(sizes.sizes * 0.95),

@@ -140,7 +140,8 @@ class HistogramPanel(QWidget):
             self.count.setText("")
             self.selected.emit(self._method, None)
             return
-        chosen = within(self._values, *self.range.getRegion(), self.quantity)
+        low, high = self.range.getRegion()
+        chosen = within(self._values, low, high, self.quantity)
         self.count.setText(f"{len(chosen):,} selected")
         self.selected.emit(self._method, chosen)
 
@@ -152,7 +153,7 @@ def within(values: NDArray[np.float64], low: float, high: float, quantity: Quant
     return np.flatnonzero((values >= low) & (values <= high))
 
 
-def bins(values: NDArray[np.float64], quantity: Quantity) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+def bins(values: NDArray[np.float64], quantity: Quantity) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return edges and counts; R = 1 is always an edge, and elements at 1 are counted below it."""
     low, high = float(values.min()), float(values.max())
     if quantity != "ratio":
