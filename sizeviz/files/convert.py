@@ -185,9 +185,11 @@ def luminance(values: NDArray[Any]) -> NDArray[Any]:
         raise InputError(f"it has {channels} channels a pixel; grey, RGB and RGBA images are supported")
     if channels < 3:
         return values[..., 0]
-    grey = 0.2126 * values[..., 0]
-    grey += 0.7152 * values[..., 1]
-    grey += 0.0722 * values[..., 2]
+    # Written by differences from green, so that grey stays what it is to the bit.
+    green = values[..., 1].astype(np.float64)
+    grey = 0.2126 * (values[..., 0] - green)
+    grey += 0.0722 * (values[..., 2] - green)
+    grey += green
     return grey
 
 
@@ -247,7 +249,7 @@ def _sizes(raw: RawMesh | RawGrid, name: str | None) -> NDArray[np.float64]:
 def _refuse_cells(raw: RawMesh, wanted: tuple[str, ...], words: str, what: str) -> None:
     others = {block.kind: len(block.rows) for block in raw.cells if block.kind not in (*wanted, *_LESSER)}
     if others:
-        found = ", ".join(f"{count} {one_line(kind, 40)}" for kind, count in others.items())
+        found = ", ".join(f"{n} {one_line(kind, 40)}{'s' if n != 1 else ''}" for kind, n in others.items())
         space = " (a volume mesh)" if set(others) & {"tetra", "hexahedron", "wedge", "pyramid"} else ""
         raise InputError(f"it holds {found}{space}; {what} is read from plane linear {words} only")
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import errno
+import logging
 import os
 import stat
+import warnings
 import zlib
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +18,6 @@ from sizeviz.errors import Cancelled, InputError, SizevizError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 MAX_BYTES = 2**30
 """Largest file that is read, in bytes, and the most that one may unpack to."""
@@ -94,8 +96,8 @@ def guarded(name: str, what: str) -> Iterator[None]:
     except Cancelled:
         raise
     except InputError as error:
-        text = one_line(error, 400)
-        raise InputError(text if text.startswith(one_line(name)) else f"{one_line(name)}: {text}") from error
+        text = one_line(error, 400).removeprefix(f"{one_line(Path(name).name)}: ")
+        raise InputError(text if one_line(name) in text else f"{one_line(name)}: {text}") from error
     except SizevizError:
         raise
     except MemoryError as error:
@@ -103,6 +105,19 @@ def guarded(name: str, what: str) -> Iterator[None]:
     except Exception as error:
         reason = one_line(error) or type(error).__name__
         raise InputError(f"{one_line(name)}: not a readable {what} ({reason}); check or export it again") from error
+
+
+@contextmanager
+def quiet(logger: str) -> Iterator[None]:
+    """Keep a library's warnings and log to itself: what is wrong with a file is said once, in the error."""
+    log = logging.getLogger(logger)
+    before, log.disabled = log.disabled, True
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        log.disabled = before
 
 
 def check_nodes(count: int, what: str = "nodes", limit: int = MAX_NODES) -> None:

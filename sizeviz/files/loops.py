@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from sizeviz.errors import InputError
 from sizeviz.files.guard import check_nodes, one_line
-from sizeviz.files.outlines import MAX_OUTLINE, checked_coordinates
+from sizeviz.files.outlines import MAX_LOOPS, MAX_OUTLINE, checked_coordinates
 from sizeviz.geometry import Domain
 from sizeviz.geometry.domain import signed_area
 from sizeviz.geometry.outline import require_simple
@@ -44,6 +44,7 @@ def parse(data: bytes, path: Path, options: ReadOptions) -> Domain:
     loops = sorted(_loops(lines), key=lambda loop: -abs(signed_area(loop)))
     if not loops:
         raise InputError("it holds no point; write one x, y pair a line")
+    check_nodes(len(loops), "loops", MAX_LOOPS)
     domain = Domain(loops[0], tuple(loops[1:]), label=one_line(path.name))
     require_simple(domain)
     return domain

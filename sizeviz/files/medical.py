@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import importlib
 import io
-import logging
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sizeviz.errors import InputError, MissingDependencyError
 from sizeviz.files.convert import luminance, sliced
-from sizeviz.files.guard import MAX_BYTES, MAX_PIXELS, check_available, check_nodes, inflated, one_line
+from sizeviz.files.guard import MAX_BYTES, MAX_PIXELS, check_available, check_nodes, inflated, one_line, quiet
 from sizeviz.files.image import Image
 from sizeviz.files.raw import RawGrid
 
@@ -23,7 +21,7 @@ if TYPE_CHECKING:
 
     from sizeviz.files.options import ReadOptions
 
-_DEFLATED = "1.2.840.10008.1.2.1.99"
+_DEFLATED = b"1.2.840.10008.1.2.1.99"
 
 
 def parse_nifti(data: bytes, path: Path, options: ReadOptions) -> Image:
@@ -42,14 +40,12 @@ def parse_nifti(data: bytes, path: Path, options: ReadOptions) -> Image:
     if data[:2] == b"\x1f\x8b":
         data = inflated(data, MAX_BYTES, wbits=31)
     volume = nibabel.Nifti2Image if data[:4] in (b"\x1c\x02\0\0", b"\0\0\x02\x1c") else nibabel.Nifti1Image
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        with _quiet("nibabel"):
-            header = volume.header_class.from_fileobj(io.BytesIO(data))
-            shape = tuple(int(n) for n in header.get_data_shape())
-            _check_volume(shape, len(data), int(header["vox_offset"]), header.get_data_dtype())
-            image = volume.from_bytes(data)
-            values = _at_time(image.dataobj, shape, options)
+    with quiet("nibabel.global"):
+        header = volume.header_class.from_fileobj(io.BytesIO(data))
+        shape = tuple(int(n) for n in header.get_data_shape())
+        _check_volume(shape, len(data), int(header["vox_offset"]), header.get_data_dtype())
+        image = volume.from_bytes(data)
+        values = _at_time(image.dataobj, shape, options)
     zooms = [float(z) for z in header.get_zooms()[:3]] + [1.0] * 3
     kept = list(shape[:3]) + [1] * (3 - len(shape[:3]))
     grid = RawGrid(
@@ -72,38 +68,22 @@ def parse_dicom(data: bytes, path: Path, options: ReadOptions) -> Image:
         If pydicom is not installed.
     """
     pydicom = _needed("pydicom")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        with _quiet("pydicom"):
-            meta = pydicom.filereader.read_file_meta_info(io.BytesIO(data))
-            if str(meta.get("TransferSyntaxUID", "")) == _DEFLATED:
-                raise InputError("it is a deflated DICOM file; store it as Explicit VR Little Endian")
-            file = pydicom.dcmread(io.BytesIO(data))
-            frames = _check_dicom(file)
-            number = frames // 2 if options.slice is None else options.slice
-            if number >= frames:
-                raise InputError(f"slice {number} does not exist; there are slices 0 to {frames - 1}")
-            pixels = _decoded(pydicom, io.BytesIO(data), number if frames > 1 else None, file)
-            spacing = _pixel_spacing(file)
-            slope, intercept = (float(file.get(k, d)) for k, d in (("RescaleSlope", 1.0), ("RescaleIntercept", 0.0)))
+    with quiet("pydicom"):
+        if _DEFLATED in data:  # asked before anything unpacks it without a limit
+            raise InputError("it is a deflated DICOM file; store it as Explicit VR Little Endian")
+        file = pydicom.dcmread(io.BytesIO(data))
+        frames = _check_dicom(file)
+        number = frames // 2 if options.slice is None else options.slice
+        if number >= frames:
+            raise InputError(f"slice {number} does not exist; there are slices 0 to {frames - 1}")
+        pixels = _decoded(pydicom, io.BytesIO(data), number if frames > 1 else None, file)
+        spacing = _pixel_spacing(file)
+        slope, intercept = (float(file.get(k, d)) for k, d in (("RescaleSlope", 1.0), ("RescaleIntercept", 0.0)))
     grey = luminance(pixels) if pixels.ndim == 3 else pixels
     grey = slope * grey.astype(np.float64) + intercept
     if str(file.get("PhotometricInterpretation", "")) == "MONOCHROME1":  # stored inverted: white is the least
         grey = grey.max() + grey.min() - grey
     return Image(grey[::-1], spacing, label=path.name)
-
-
-class _quiet:
-    """Keep a library's log to itself: what is wrong is said once, in the error."""
-
-    def __init__(self, name: str) -> None:
-        self._logger = logging.getLogger(name)
-
-    def __enter__(self) -> None:
-        self._before, self._logger.disabled = self._logger.disabled, True
-
-    def __exit__(self, *_: object) -> None:
-        self._logger.disabled = self._before
 
 
 def _needed(module: str) -> Any:

@@ -133,7 +133,10 @@ def read_npy(data: bytes) -> NDArray[Any]:
     start = 8 + width
     length = struct.unpack_from("<H" if width == 2 else "<I", data, 8)[0]
     check_available(length, min(len(data) - start, _MAX_HEADER), "the header")
-    header = ast.literal_eval(data[start : start + length].decode("latin-1").strip())
+    try:
+        header = ast.literal_eval(data[start : start + length].decode("latin-1").strip())
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise InputError("its header is corrupt; save it again with numpy.save") from None
     if not isinstance(header, dict) or not {"descr", "fortran_order", "shape"} <= set(header):
         raise InputError("its header is corrupt; save it again with numpy.save")
     dtype, shape = np.dtype(np.lib.format.descr_to_dtype(header["descr"])), header["shape"]

@@ -20,10 +20,15 @@ if TYPE_CHECKING:
     from sizeviz.files.options import ReadOptions
     from sizeviz.files.raw import RawMesh
 
-MAX_OUTLINE = 1_000_000
+MAX_OUTLINE = 200_000
 """Most vertices of a domain's loops, lines and points together."""
 
+MAX_LOOPS = 2_000
+"""Most loops of a domain."""
+
 _MAX_CROSSING = 500
+_MOST_CROSSINGS = 20_000
+_TOGETHER = 64
 
 
 def checked_coordinates(points: Any, what: str) -> NDArray[np.float64]:
@@ -59,6 +64,7 @@ def domain_from_loops(loops: Sequence[NDArray[np.float64]], label: str, options:
     from shapely import Polygon
 
     check_nodes(sum(map(len, loops)), "vertices", MAX_OUTLINE)
+    check_nodes(len(loops), "loops", MAX_LOOPS)
     rings = [ring for ring in map(closed, loops) if len(ring) >= 3]
     rings.sort(key=lambda ring: -abs(signed_area(ring)))
     if not rings:
@@ -67,6 +73,7 @@ def domain_from_loops(loops: Sequence[NDArray[np.float64]], label: str, options:
     if whole.is_valid and whole.area > 0:
         return Domain(rings[0], tuple(rings[1:]), label=one_line(label))
     check_nodes(len(rings), "loops that cross or nest", _MAX_CROSSING)
+    _check_crossings(rings)
     inside = _mended(Polygon(rings[0]))
     for ring in rings[1:]:
         inside = inside.symmetric_difference(_mended(Polygon(ring)))
@@ -103,8 +110,11 @@ def domain_from_polygons(
     """
     from shapely import LineString, Point, unary_union
 
+    check_nodes(sum(1 + len(getattr(polygon, "interiors", ())) for polygon in polygons), "loops", MAX_LOOPS)
     sole = polygons[0] if len(polygons) == 1 and polygons[0].is_valid else None
     # A sound polygon is taken as it is: joining could move where its loops begin.
+    if sole is None:
+        _check_crossings([ring for polygon in polygons for ring in _rings(polygon)])
     whole = unary_union([_mended(polygon) for polygon in polygons]) if sole is None else sole
     regions = [part for part in getattr(whole, "geoms", [whole]) if part.geom_type == "Polygon" and part.area > 0]
     if not regions:
@@ -169,6 +179,26 @@ def closed(loop: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return a loop without vertices that repeat the one before them, or the first at the end, ``(K, 2)``."""
     keep = (loop != np.roll(loop, 1, axis=0)).any(axis=1)
     return loop[keep]
+
+
+def _rings(shape: Any) -> list[NDArray[np.float64]]:
+    """Return the coordinates of every loop of a polygon or of several."""
+    parts = [part for part in getattr(shape, "geoms", [shape]) if part.geom_type == "Polygon"]
+    return [np.asarray(ring.coords)[:, :2] for part in parts for ring in (part.exterior, *part.interiors)]
+
+
+def _check_crossings(rings: Sequence[NDArray[np.float64]]) -> None:
+    """Raise InputError if segments meet so often that mending would take for ever: asked before it is begun."""
+    import shapely
+
+    ends = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings if len(ring)])
+    segments = shapely.linestrings(ends)
+    tree = shapely.STRtree(segments)
+    met = 0
+    for start in range(0, len(segments), _TOGETHER):
+        met += tree.query(segments[start : start + _TOGETHER], predicate="intersects").shape[1]
+        if met > 5 * len(segments) + _MOST_CROSSINGS:  # each segment meets itself and its neighbours
+            raise InputError("its loops cross each other too often to be mended; draw outlines that do not cross")
 
 
 def _ring(ring: Any) -> NDArray[np.float64]:

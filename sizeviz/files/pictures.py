@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import io
-import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sizeviz.errors import InputError
 from sizeviz.files.convert import luminance
-from sizeviz.files.guard import MAX_PIXELS, check_nodes
+from sizeviz.files.guard import MAX_PIXELS, check_nodes, quiet
 from sizeviz.files.image import Image
 
 if TYPE_CHECKING:
@@ -33,8 +32,7 @@ def parse(data: bytes, path: Path, options: ReadOptions) -> Image:
     import PIL.Image
     import PIL.ImageOps
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what Pillow warns of is checked here, or an error
+    with quiet("PIL.TiffImagePlugin"):  # what Pillow warns of is checked here, or an error
         try:
             picture = PIL.Image.open(io.BytesIO(data), formats=("PNG", "TIFF", "JPEG"))
         except PIL.UnidentifiedImageError:

@@ -21,6 +21,9 @@ _MOST_TURN = np.deg2rad(12.0)
 _DOUBLINGS = 6
 """How often the samples are doubled to turn less; a cusp stays one however often."""
 
+_MOST_STRETCH = 1e6
+"""How much larger than the other radius, and than the distance of its ends, an arc's radius may be."""
+
 _MAX_SAMPLES = 20_000
 _MAX_COMMANDS = 500_000
 
@@ -103,6 +106,8 @@ def arc(
     rx, ry = abs(radii[0]), abs(radii[1])
     if rx == 0 or ry == 0 or start == stop:
         return np.array([stop])
+    if not max(rx, ry) <= _MOST_STRETCH * min(rx, ry, abs(start - stop)):
+        raise InputError(f"an arc of radii {rx:g} and {ry:g} is too long for its ends; draw it as a line")
     turn = np.exp(1j * np.deg2rad(tilt))
     half = (start - stop) / 2 / turn
     reach = np.hypot(half.real / rx, half.imag / ry)

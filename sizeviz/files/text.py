@@ -44,12 +44,14 @@ def numbers(text: bytes, what: str, count: int | None = None, dtype: DTypeLike =
         raise InputError(f"{what}: {count} numbers are announced, {words} are there; the file is cut or corrupt")
     if words == 0:
         return np.empty(0, dtype=dtype)
-    with warnings.catch_warnings():
-        # numpy warns of the word it stops at; the count below says so in our words.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        values: NDArray[Any] = np.fromstring(text, dtype=dtype, sep=" ")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", DeprecationWarning)  # up to numpy 2.2 a word that is no number only warns
+            values: NDArray[Any] = np.fromstring(text, dtype=dtype, sep=" ")
+    except (ValueError, DeprecationWarning):
+        raise InputError(f"{what}: {_first_bad(text, dtype)!r} is not a number; the file is corrupt") from None
     if len(values) != words:
-        raise InputError(f"{what}: {one_line(_word(text, len(values)), 40)!r} is not a number; the file is corrupt")
+        raise InputError(f"{what}: not every word is a number; the file is corrupt")
     return values
 
 
@@ -85,6 +87,12 @@ def _shown(value: bytes | str) -> str:
     return one_line(value.decode("latin-1") if isinstance(value, bytes) else value, 40)
 
 
-def _word(text: bytes, number: int) -> str:
-    """Return the word at a place of the text."""
-    return text.split(maxsplit=number + 1)[number].decode("latin-1")
+def _first_bad(text: bytes, dtype: DTypeLike) -> str:
+    """Return the first word that is no number."""
+    read = int if np.dtype(dtype).kind == "i" else float
+    for word in text.split():
+        try:
+            read(word)
+        except ValueError:
+            return _shown(word)
+    return ""

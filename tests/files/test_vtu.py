@@ -123,7 +123,7 @@ def test_damaged_files_are_refused_by_name(tmp_path: Path, damage, words: str) -
 
 def test_a_mesh_is_no_mesh_of_triangles(tmp_path: Path) -> None:
     path = write_field(tmp_path / "f.vtu", small_field())
-    with pytest.raises(InputError, match="holds 12 triangle; a mesh is read from plane linear quadrilaterals only"):
+    with pytest.raises(InputError, match="holds 12 triangles; a mesh is read from plane linear quadrilaterals only"):
         read_mesh(path)
 
 

@@ -1,0 +1,54 @@
+"""Damaged files: each gives a value or one line of error that names it, soon and in little memory."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+from files.reader_fuzz import TABLES, Outcome, cases, on_alarm, run, tried
+from files.reader_seeds import seeds
+
+CASES = 300
+
+
+def test_every_sound_seed_is_read(tmp_path: Path) -> None:
+    """Otherwise the fuzzer would only ever see the first check of a reader."""
+    for seed in seeds():
+        tables = [name for name, readers in TABLES.items() if seed.suffix in readers]
+        outcomes = [tried(name, seed.suffix, seed.data, seed.beside, tmp_path) for name in tables]
+        assert "value" in {outcome.kind for outcome in outcomes}, outcomes
+        assert {outcome.kind for outcome in outcomes} <= {"value", "error"}, outcomes
+
+
+def test_every_reader_has_a_seed() -> None:
+    known = {suffix for readers in TABLES.values() for suffix in readers} - {".jpeg", ".tiff"}
+    assert known == {seed.suffix for seed in seeds()}
+
+
+@pytest.mark.parametrize("share", range(3))
+def test_damaged_files_never_crash_a_reader(tmp_path: Path, share: int) -> None:
+    before = signal.signal(signal.SIGALRM, on_alarm)
+    try:
+        bad = list(bad_outcomes(tmp_path, share))
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert not bad, bad
+
+
+def bad_outcomes(folder: Path, share: int) -> list[tuple[int, Outcome]]:
+    found = []
+    for number, table, suffix, data, beside in cases(CASES, seed=7):
+        if number % 3 == share:
+            signal.setitimer(signal.ITIMER_REAL, 20)
+            outcome = tried(table, suffix, data, beside, folder)
+            if outcome.kind not in ("value", "error"):
+                found.append((number, outcome))
+    return found
+
+
+def test_the_fuzzer_runs_in_worker_processes() -> None:
+    outcomes = run(12, seed=3, workers=1)
+    assert [number for number, _ in outcomes] == list(range(12))
+    assert {outcome.kind for _, outcome in outcomes} <= {"value", "error"}
