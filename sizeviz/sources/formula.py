@@ -1,12 +1,11 @@
-"""Formulas in x and y: parsed, never executed as Python."""
+"""Formulas in x and y: parsed by a grammar of their own, never evaluated as Python."""
 
 from __future__ import annotations
 
-import ast
-import math
+import re
 from dataclasses import dataclass
 from functools import reduce
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,162 +16,182 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Evaluator = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
+    Value = NDArray[np.float64]
+    Node = Callable[[Value, Value], Value]
 
-MAX_LENGTH = 4000
-"""Characters a formula may have."""
+LONGEST = 5000
+"""Characters in a formula."""
 
-MAX_DEPTH = 60
-"""How deep its brackets and operations may nest."""
+DEEPEST = 100
+"""Nested brackets, signs and powers in a formula."""
 
-FUNCTIONS: dict[str, tuple[Callable[..., Any], int]] = {
+FUNCTIONS: dict[str, tuple[Callable[..., Value], int | None]] = {
     "abs": (np.abs, 1),
     "sqrt": (np.sqrt, 1),
+    "hypot": (np.hypot, 2),
     "exp": (np.exp, 1),
     "log": (np.log, 1),
     "sin": (np.sin, 1),
     "cos": (np.cos, 1),
     "tan": (np.tan, 1),
-    "hypot": (np.hypot, 2),
     "atan2": (np.arctan2, 2),
-    "min": (np.minimum, 0),
-    "max": (np.maximum, 0),
+    "min": (np.minimum, None),
+    "max": (np.maximum, None),
 }
-"""The functions, and how many arguments each takes; 0 stands for two or more."""
+"""What may be called, and with how many arguments; None stands for one or more."""
 
-_OPERATORS: dict[type[ast.operator], Callable[..., Any]] = {
-    ast.Add: np.add,
-    ast.Sub: np.subtract,
-    ast.Mult: np.multiply,
-    ast.Div: np.divide,
-    ast.Pow: np.power,
+ALLOWED = f"x, y, pi, numbers, + - * / **, brackets and {', '.join(FUNCTIONS)}"
+
+_TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([A-Za-z_]\w*)|(\*\*|[-+*/(),]))")
+
+_BINDING = {"+": 10, "-": 10, "*": 20, "/": 20, "**": 40}
+"""How strongly each operator binds; signs bind between products and powers, so that -x**2 is -(x**2)."""
+
+_SIGN = 30
+
+_OPERATORS: dict[str, Callable[[Value, Value], Value]] = {
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+    "**": np.power,
 }
 
-_ALLOWED = f"x, y, pi, numbers, + - * / **, {', '.join(FUNCTIONS)}"
 
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Formula:
-    """A function of x and y.
+    """A parsed formula: call it with arrays of x and y.
 
     Parameters
     ----------
     text : str
-        The formula as it was written.
-    evaluate : callable
-        Takes arrays x and y of one shape, returns an array of that shape; not a number where undefined.
-    """
-
-    text: str
-    evaluate: Evaluator
-
-    def __call__(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the value at each point; NaN or infinite where the formula has no value."""
-        x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
-        with np.errstate(all="ignore"):
-            value = self.evaluate(x, y)
-        return np.broadcast_to(np.asarray(value, dtype=np.float64), np.broadcast_shapes(x.shape, y.shape))
-
-
-def parsed(text: str) -> Formula:
-    """Return a formula.
-
-    Parameters
-    ----------
-    text : str
-        Such as ``min(0.25, abs(hypot(x - 0.5, y - 0.5) - 0.2575) + 0.25e-3)``.
+        What was parsed; equal formulas have equal text.
 
     Raises
     ------
     InputError
-        If it is empty, too long, no expression, or holds anything but numbers, x, y, pi and the listed operations.
+        If the text is no formula; the message says where, and what is allowed.
     """
-    shown = text.strip() if len(text) <= 60 else text.strip()[:57] + "..."
-    if not text.strip():
-        raise InputError(f"the formula is empty; write sizes in x and y, such as 0.02 + 0.1*x, from {_ALLOWED}")
-    if len(text) > MAX_LENGTH:
-        raise InputError(f"formula {shown!r} has {len(text)} characters; at most {MAX_LENGTH} are read")
-    try:
-        tree = ast.parse(text.strip(), mode="eval")
-    except SyntaxError as error:
-        where = f" near character {error.offset}" if error.offset else ""
-        raise InputError(f"formula {shown!r} cannot be read{where}; write it from {_ALLOWED}") from None
-    except (ValueError, RecursionError, MemoryError):
-        raise InputError(f"formula {shown!r} cannot be read; write it from {_ALLOWED}") from None
-    return Formula(text.strip(), _compiled(tree.body, shown, 0))
+
+    text: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_root", _Parser(self.text).parsed())
+
+    def __call__(self, x: Value, y: Value) -> Value:
+        """Return the value at each point; not a number where a function is not defined."""
+        root: Node = self.__dict__["_root"]
+        x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
+        with np.errstate(all="ignore"):
+            return np.broadcast_to(root(x, y), np.broadcast_shapes(x.shape, y.shape)).astype(np.float64)
+
+    def __reduce__(self) -> tuple[type[Formula], tuple[str]]:
+        """Travel between processes as text, to be parsed again."""
+        return Formula, (self.text,)
 
 
-def _compiled(node: ast.expr, shown: str, depth: int) -> Evaluator:
-    if depth > MAX_DEPTH:
-        raise InputError(f"formula {shown!r} nests deeper than {MAX_DEPTH} operations; split or simplify it")
-    if isinstance(node, ast.Constant):
-        return _constant(node, shown)
-    if isinstance(node, ast.Name):
-        return _name(node.id, shown)
-    if isinstance(node, ast.BinOp):
-        return _binary(node, shown, depth)
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
-        inner = _compiled(node.operand, shown, depth + 1)
-        return inner if isinstance(node.op, ast.UAdd) else (lambda x, y: np.negative(inner(x, y)))
-    if isinstance(node, ast.Call):
-        return _call(node, shown, depth)
-    raise InputError(f"formula {shown!r} holds {_words(node)}, which is not allowed; write it from {_ALLOWED}")
+class _Parser:
+    """A Pratt parser: each operator takes what binds more strongly than itself."""
+
+    def __init__(self, text: str) -> None:
+        self.text, self.at, self.depth = text, 0, 0
+        if len(text) > LONGEST:
+            raise InputError(f"formula: {len(text)} characters are too many; use at most {LONGEST}")
+        self.tokens = self._split()
+
+    def _split(self) -> list[tuple[str, str, int]]:
+        """Return kind, text and position of every token, an end mark last."""
+        tokens, at = [], 0
+        end = len(self.text.rstrip())
+        while at < end:
+            match = _TOKEN.match(self.text, at)
+            if match is None:
+                at += len(self.text[at:]) - len(self.text[at:].lstrip())
+                raise InputError(f"formula: {self.text[at]!r} at position {at + 1} is not allowed; use {ALLOWED}")
+            kind = ("number", "name", "operator")[(match.lastindex or 1) - 1]
+            tokens.append((kind, match.group(match.lastindex or 1), match.start(match.lastindex or 1)))
+            at = match.end()
+        return [*tokens, ("end", "", end)]
+
+    def parsed(self) -> Node:
+        """Return the whole formula as a function."""
+        node = self._expression(0)
+        kind, text, position = self.tokens[self.at]
+        if kind != "end":
+            raise InputError(f"formula: {text!r} at position {position + 1} does not fit; an operator is missing")
+        return node
+
+    def _next(self) -> tuple[str, str, int]:
+        token = self.tokens[self.at]
+        self.at = min(self.at + 1, len(self.tokens) - 1)
+        return token
+
+    def _expression(self, binding: int) -> Node:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise InputError(f"formula: it is nested more than {DEEPEST} deep; write it more simply")
+        left = self._operand()
+        while (strength := _BINDING.get(self.tokens[self.at][1], -1)) > binding:
+            operator = self._next()[1]
+            # a power takes powers to its right: 2**3**2 is 2**9
+            right = self._expression(strength - 1 if operator == "**" else strength)
+            left = _applied(_OPERATORS[operator], left, right)
+        self.depth -= 1
+        return left
+
+    def _operand(self) -> Node:
+        kind, text, position = self._next()
+        if kind == "number":
+            return _constant(float(text))
+        if kind == "name":
+            return self._named(text, position)
+        if text == "(":
+            inner = self._expression(0)
+            self._close(position)
+            return inner
+        if text in ("+", "-"):
+            operand = self._expression(_SIGN)
+            return operand if text == "+" else _applied(np.negative, operand)
+        what = "it ends too soon" if kind == "end" else f"{text!r} at position {position + 1} is out of place"
+        raise InputError(f"formula: {what}; expected a number, x, y, pi, a function or a bracket")
+
+    def _named(self, name: str, position: int) -> Node:
+        if name == "x":
+            return lambda x, y: x
+        if name == "y":
+            return lambda x, y: y
+        if name == "pi":
+            return _constant(np.pi)
+        if name not in FUNCTIONS:
+            raise InputError(f"formula: unknown name {name[:40]!r} at position {position + 1}; use {ALLOWED}")
+        function, count = FUNCTIONS[name]
+        arguments = self._arguments(name)
+        if count is None:
+            return lambda x, y: reduce(function, [argument(x, y) for argument in arguments])
+        if len(arguments) != count:
+            raise InputError(f"formula: {name} takes {count} argument{'s' * (count > 1)}, got {len(arguments)}")
+        return _applied(function, *arguments)
+
+    def _arguments(self, name: str) -> list[Node]:
+        _, text, position = self._next()
+        if text != "(":
+            raise InputError(f"formula: {name} is a function; write {name}(...)")
+        arguments = [self._expression(0)]
+        while self.tokens[self.at][1] == ",":
+            self._next()
+            arguments.append(self._expression(0))
+        self._close(position)
+        return arguments
+
+    def _close(self, opened: int) -> None:
+        if self._next()[1] != ")":
+            raise InputError(f"formula: the bracket opened at position {opened + 1} is not closed")
 
 
-def _constant(node: ast.Constant, shown: str) -> Evaluator:
-    if isinstance(node.value, bool) or not isinstance(node.value, int | float):
-        raise InputError(f"formula {shown!r} holds {_words(node)}, which is no number; write it from {_ALLOWED}")
-    try:
-        value = float(node.value)
-    except OverflowError:
-        value = math.inf
-    if not math.isfinite(value):
-        raise InputError(f"formula {shown!r} holds a number beyond 1e308; use a smaller one")
-    constant = np.float64(value)
-    return lambda x, y: constant
+def _constant(value: float) -> Node:
+    number = np.float64(value)
+    return lambda x, y: np.asarray(number)
 
 
-def _name(name: str, shown: str) -> Evaluator:
-    if name == "x":
-        return lambda x, y: x
-    if name == "y":
-        return lambda x, y: y
-    if name == "pi":
-        return lambda x, y: np.float64(np.pi)
-    what = "a function: give its arguments in brackets" if name in FUNCTIONS else "unknown"
-    raise InputError(f"formula {shown!r}: the name {name[:40]!r} is {what}; write it from {_ALLOWED}")
-
-
-def _binary(node: ast.BinOp, shown: str, depth: int) -> Evaluator:
-    operator = _OPERATORS.get(type(node.op))
-    if operator is None:
-        hint = "; powers are written **" if isinstance(node.op, ast.BitXor) else ""
-        raise InputError(f"formula {shown!r} holds {_words(node.op)}, which is not allowed{hint}; use {_ALLOWED}")
-    left, right = _compiled(node.left, shown, depth + 1), _compiled(node.right, shown, depth + 1)
-    return lambda x, y: operator(left(x, y), right(x, y))
-
-
-def _call(node: ast.Call, shown: str, depth: int) -> Evaluator:
-    name = node.func.id if isinstance(node.func, ast.Name) else None
-    if name not in FUNCTIONS:
-        raise InputError(f"formula {shown!r} calls {_words(node.func)}, which is unknown; write it from {_ALLOWED}")
-    function, arity = FUNCTIONS[name]
-    if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
-        raise InputError(f"formula {shown!r}: give {name} plain arguments, parted by commas")
-    if len(node.args) != arity and not (arity == 0 and len(node.args) >= 2):
-        wanted = "two or more" if arity == 0 else str(arity)
-        raise InputError(f"formula {shown!r}: {name} takes {wanted} arguments, not {len(node.args)}")
-    inner = [_compiled(argument, shown, depth + 1) for argument in node.args]
-    if arity == 1:
-        only = inner[0]
-        return lambda x, y: function(only(x, y))
-    return lambda x, y: reduce(function, (part(x, y) for part in inner))
-
-
-def _words(node: ast.AST) -> str:
-    """Return what a piece of syntax is called in a message."""
-    if isinstance(node, ast.Name):
-        return repr(node.id[:40])
-    if isinstance(node, ast.Constant):
-        return repr(node.value)[:40]
-    return f"{type(node).__name__.lower()} syntax"
+def _applied(function: Callable[..., Value], *arguments: Node) -> Node:
+    return lambda x, y: function(*(argument(x, y) for argument in arguments))

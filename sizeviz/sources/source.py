@@ -1,39 +1,37 @@
-"""What every source gives: a domain, a size field on a background mesh, and the sizes that R is judged against."""
+"""Where a size field comes from, and what its meshes are judged against."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from sizeviz.files.image import Image
+    from sizeviz.files import Image
     from sizeviz.geometry import Domain
     from sizeviz.sizing import SizeField, SizeFunction
 
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A prescribed size field, ready for the pipeline.
+    """A size field with the domain it is meant for.
 
     Parameters
     ----------
     name : str
-        Short name: an example's, a file's stem.
+        Short name: an example's, a file's, or ``formula``.
     label : str
-        What to call it in pictures and messages.
+        One line of plain words for tables and pictures.
     domain : Domain
-        The region to mesh.
+        What is to be meshed.
     field : SizeField
-        The prescribed sizes as a background mesh, which limiting and preserving work on.
+        The prescribed sizes, piecewise linear.
     reference : SizeFunction
-        What R(e) is measured against: the field itself, or the formula it was sampled from.
+        What R(e) is measured against: the field itself, or the formula that it approximates.
     image : Image, optional
-        The picture behind the field, for the interpolation error of section 5.2; its pixels span the domain's box.
+        The picture that the sizes were derived from, over the same plane, for interpolation errors.
     provenance : mapping
-        Where it came from, in words and plain numbers, for reports and study files.
+        Plain values that say how to get the source again.
     """
 
     name: str
@@ -43,6 +41,3 @@ class Source:
     reference: SizeFunction
     image: Image | None = None
     provenance: Mapping[str, Any] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
