@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import dataclasses
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from sizeviz.files import Image
     from sizeviz.geometry import Domain
     from sizeviz.sizing import SizeField, SizeFunction
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Source:
     """A size field with the domain it is meant for.
 
@@ -40,4 +41,4 @@ class Source:
     field: SizeField
     reference: SizeFunction
     image: Image | None = None
-    provenance: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = dataclasses.field(default_factory=dict)
