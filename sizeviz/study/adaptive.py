@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from sizeviz.conformity import Measure, MeshReport
     from sizeviz.geometry import QuadMesh
-    from sizeviz.sources import Source
+    from sizeviz.sources.source import Source
 
 FREE: tuple[str, ...] = ("threads", "max_elements")
 """Options that do not decide the meshes."""
