@@ -36,7 +36,7 @@ def check(t: Triangulation) -> None:
 
 
 @pytest.mark.parametrize("n", [3, 10, 500, 20_000])
-def test_agrees_with_scipy_on_random_points(n):
+def test_agrees_with_scipy_on_random_points(n) -> None:
     points = np.random.default_rng(n).random((n, 2))
     t = triangulated(points)
     check(t)
@@ -52,7 +52,7 @@ small = st.integers(0, 6).map(float)
 
 @settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(small, small), min_size=1, max_size=40), st.sampled_from([1.0, 0.1, 1 / 3]))
-def test_lattice_points_with_duplicates(rows, step):
+def test_lattice_points_with_duplicates(rows, step) -> None:
     """Collinear, cocircular and coincident points by the dozen."""
     points = np.array(rows) * step
     t = triangulated(points)
@@ -71,7 +71,7 @@ def test_lattice_points_with_duplicates(rows, step):
         assert (orientations(distinct[0], distinct[-1], distinct) == 0).all()
 
 
-def test_lattice_that_binary_fractions_cannot_hold():
+def test_lattice_that_binary_fractions_cannot_hold() -> None:
     n = 40
     points = np.stack(np.meshgrid(np.arange(n) / 39, np.arange(n) / 39), axis=-1).reshape(-1, 2)
     t = triangulated(points)
@@ -79,7 +79,7 @@ def test_lattice_that_binary_fractions_cannot_hold():
     assert len(t.triangles) == 2 * (n - 1) ** 2
 
 
-def test_points_on_a_circle_and_its_centre():
+def test_points_on_a_circle_and_its_centre() -> None:
     angle = 2 * np.pi * np.arange(64) / 64
     t = triangulated(np.vstack([np.column_stack([np.cos(angle), np.sin(angle)]), [[0.0, 0.0]]]))
     check(t)
@@ -90,29 +90,29 @@ def test_points_on_a_circle_and_its_centre():
 @pytest.mark.parametrize(
     "points", [np.empty((0, 2)), [[1, 2]], [[0, 0], [1, 1]], [[0, 0], [1, 1], [2, 2], [3, 3]], np.zeros((9, 2))]
 )
-def test_no_triangles_where_there_is_no_area(points):
+def test_no_triangles_where_there_is_no_area(points) -> None:
     assert delaunay(np.asarray(points, dtype=float)).shape == (0, 3)
 
 
-def test_same_result_every_time_whatever_the_scale():
+def test_same_result_every_time_whatever_the_scale() -> None:
     points = np.random.default_rng(5).random((3000, 2))
     assert np.array_equal(delaunay(points), delaunay(points))
     assert canonical(delaunay(points)) == canonical(delaunay(points * 1024.0))
 
 
-def test_strongly_graded_points():
+def test_strongly_graded_points() -> None:
     rng = np.random.default_rng(6)
     radius = 10.0 ** rng.uniform(-9, 0, 4000)
     angle = rng.uniform(0, 2 * np.pi, 4000)
     check(triangulated(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])))
 
 
-def test_not_finite_is_refused():
+def test_not_finite_is_refused() -> None:
     with pytest.raises(InputError, match="point 1 is not finite"):
         delaunay([[0, 0], [np.nan, 0], [1, 1]])
 
 
-def test_cancel_stops_it():
+def test_cancel_stops_it() -> None:
     class Stop:
         def step(self, fraction: float, message: str = "") -> None:
             raise Cancelled
@@ -121,7 +121,7 @@ def test_cancel_stops_it():
         triangulated(np.random.default_rng(7).random((100, 2)), monitor=Stop())
 
 
-def test_hilbert_order_keeps_neighbours_close():
+def test_hilbert_order_keeps_neighbours_close() -> None:
     points = np.random.default_rng(8).random((4000, 2))
     order = hilbert_order(points)
     assert np.array_equal(np.sort(order), np.arange(4000))

@@ -37,18 +37,18 @@ point = st.tuples(coordinate, coordinate)
 
 @settings(max_examples=400, deadline=None)
 @given(point, point, point)
-def test_orientation_is_exact(a, b, c):
+def test_orientation_is_exact(a, b, c) -> None:
     assert orientations(a, b, c)[0] == exact_orientation(a, b, c)
 
 
 @settings(max_examples=400, deadline=None)
 @given(point, point, point, point)
-def test_circle_side_is_exact(a, b, c, d):
+def test_circle_side_is_exact(a, b, c, d) -> None:
     assert circle_sides(a, b, c, d)[0] == exact_circle_side(a, b, c, d)
 
 
 @pytest.mark.parametrize("step", [1.0, 0.1, 1 / 3, 1e-9, 12345.678])
-def test_near_cocircular_lattice_corners(step):
+def test_near_cocircular_lattice_corners(step) -> None:
     """The corners of lattice squares, each moved by an ulp or not at all: the hardest calls there are."""
     rng = np.random.default_rng(1)
     corner = rng.integers(-50, 50, (500, 2)) * step
@@ -59,7 +59,7 @@ def test_near_cocircular_lattice_corners(step):
     assert len(set(got.tolist())) > 1
 
 
-def test_points_on_a_line_through_far_places():
+def test_points_on_a_line_through_far_places() -> None:
     """Collinear by construction (midpoints are exact), where rounded determinants are pure noise."""
     rng = np.random.default_rng(2)
     a = rng.integers(-(2**40), 2**40, (300, 2)).astype(float)
@@ -67,7 +67,7 @@ def test_points_on_a_line_through_far_places():
     assert not orientations(a, b, (a + b) / 2).any()
 
 
-def test_swapping_two_points_changes_the_sign():
+def test_swapping_two_points_changes_the_sign() -> None:
     rng = np.random.default_rng(3)
     a, b, c, d = rng.random((4, 200, 2))
     assert np.array_equal(orientations(a, b, c), -orientations(b, a, c))
