@@ -11,12 +11,16 @@ import json
 import os
 import platform
 import re
+import subprocess
+import sys
+import time
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.threads import default_threads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,6 +28,13 @@ if TYPE_CHECKING:
 PACKAGE = Path(__file__).parent
 """Folder of sizeviz's own code."""
 
+PART_SECONDS: dict[str, float] = {"mesh": 40.0, "smooth": 35.0, "field": 12.0, "judge": 8.0}
+"""About how long each part of the rehearsal takes to compile, the longest first."""
+
+POLL_SECONDS = 0.05
+"""How often the processes are looked at."""
+
+_NULL = subprocess.DEVNULL
 _IMPORTED = re.compile(r"^\s*(?:from|import)\s+(sizeviz[\w.]*)", re.MULTILINE)
 _DECORATED = re.compile(r"^\s*from numba import|^\s*import numba|_jit import", re.MULTILINE)
 
@@ -36,6 +47,8 @@ def are_compiled() -> bool:
 def compile_kernels(monitor: Monitor = SILENT) -> None:
     """Compile what the pipeline needs by running it on a tiny study, and note it for the next time.
 
+    The parts of the pipeline are compiled in processes side by side; then the whole is run here, from their results.
+
     Raises
     ------
     Cancelled
@@ -44,9 +57,43 @@ def compile_kernels(monitor: Monitor = SILENT) -> None:
     from sizeviz.study.rehearsal import rehearsed
 
     drop_stale()
-    rehearsed(_Prefixed(monitor))
+    _play_parts(SubMonitor(monitor, 0.0, 0.95))
+    rehearsed(SubMonitor(_Prefixed(monitor), 0.95, 1.0))
     fingerprints = _fingerprints()
     _note({"files": fingerprints, "compiled": _overall(fingerprints)})
+
+
+def _play_parts(monitor: Monitor) -> None:
+    """Let each part of the rehearsal compile its kernels in a process of its own, as many at once as there are cores.
+
+    A part that fails is no matter: the rehearsal that follows meets the same trouble, and reports it.
+    """
+    waiting, done = list(PART_SECONDS), 0.0
+    running: dict[str, tuple[subprocess.Popen[bytes], float]] = {}
+    total = sum(PART_SECONDS.values())
+    try:
+        while waiting or running:
+            while waiting and len(running) < default_threads():
+                part = waiting.pop(0)
+                command = [sys.executable, "-m", "sizeviz.study.rehearsal", part]
+                process = subprocess.Popen(command, stdin=_NULL, stdout=_NULL, stderr=_NULL)
+                running[part] = process, time.monotonic()
+            for part in [part for part, (process, _) in running.items() if process.poll() is not None]:
+                del running[part]
+                done += PART_SECONDS[part]
+            now = time.monotonic()
+            # A running part's bar nears its end without reaching it.
+            under_way = sum(_share(now - began, PART_SECONDS[part]) for part, (_, began) in running.items())
+            monitor.step((done + under_way) / total, f"compiling, once only: {', '.join(running) or 'done'}")
+            time.sleep(POLL_SECONDS)
+    finally:
+        for process, _ in running.values():
+            process.kill()
+            process.wait()
+
+
+def _share(elapsed: float, expected: float) -> float:
+    return expected * elapsed / (elapsed + 0.3 * expected)
 
 
 def drop_stale() -> list[str]:

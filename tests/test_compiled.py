@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from sizeviz import compiled
+from sizeviz.errors import Cancelled
 
 LOW = "from numba import njit\n\n@njit(cache=True)\ndef low(x):\n    return x\n"
 HIGH = "from numba import njit\nfrom sizeviz.a._low import low\n\n@njit(cache=True)\ndef high(x):\n    return low(x)\n"
@@ -72,11 +74,12 @@ def test_compiled_means_from_these_very_sources(package: Path, monkeypatch: pyte
 
     from sizeviz.study import rehearsal
 
+    monkeypatch.setattr(compiled, "_play_parts", lambda monitor: monitor.step(1.0, "in processes"))
     monkeypatch.setattr(rehearsal, "rehearsed", lambda monitor: monitor.step(0.5, "size preserving: mesh"))
     assert not compiled.are_compiled()
     compiled.compile_kernels(Recording())
     assert compiled.are_compiled()
-    assert steps == [(0.5, "compiling, once only: size preserving: mesh")]
+    assert steps == [(0.95, "in processes"), (pytest.approx(0.975), "compiling, once only: size preserving: mesh")]
     changed(package, "b/_alone.py")
     assert not compiled.are_compiled()
 
@@ -86,3 +89,48 @@ def test_notes_that_are_no_json_count_as_none(package: Path) -> None:
     (package / "__pycache__" / "kernels.json").write_text("{")
     assert not compiled.are_compiled()
     assert compiled.drop_stale() == []
+
+
+def test_parts_run_in_processes_and_their_failure_is_left_to_the_rehearsal(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps: list[tuple[float, str]] = []
+
+    class Recording:
+        def step(self, fraction: float, message: str = "") -> None:
+            steps.append((fraction, message))
+
+    monkeypatch.setattr(compiled, "PART_SECONDS", {"judge": 1.0, "no such part": 1.0})
+    compiled._play_parts(Recording())
+    assert steps[-1][0] == 1.0
+    assert any("judge" in message for _, message in steps)
+
+
+def test_cancelling_ends_the_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[subprocess.Popen[bytes]] = []
+
+    class Recorded(subprocess.Popen):
+        def __init__(self, *args: object, **kwargs: object) -> None:
+            super().__init__(*args, **kwargs)
+            started.append(self)
+
+    class Stop:
+        def step(self, fraction: float, message: str = "") -> None:
+            raise Cancelled
+
+    monkeypatch.setattr(compiled.subprocess, "Popen", Recorded)
+    with pytest.raises(Cancelled):
+        compiled._play_parts(Stop())
+    assert started
+    assert all(process.returncode == -9 for process in started)
+
+
+def test_the_parts_are_those_of_the_rehearsal() -> None:
+    from sizeviz.study.rehearsal import PARTS
+
+    assert list(compiled.PART_SECONDS) == list(PARTS)
+
+
+@pytest.mark.parametrize("part", ["field", "mesh", "smooth", "judge"])
+def test_each_part_runs(part: str) -> None:
+    from sizeviz.study.rehearsal import PARTS
+
+    assert PARTS[part]() is None
