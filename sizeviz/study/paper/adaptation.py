@@ -1,0 +1,71 @@
+"""Section 5.1: the adaptive process on the ring, by both methods and every mesher."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sizeviz.files import read_mesh
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.sources import load
+from sizeviz.study.adaptive import AdaptOptions, adapted
+from sizeviz.study.pipeline import COMPARED
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from sizeviz.files import MeshFile
+    from sizeviz.study.evolution import Evolution
+    from sizeviz.study.paper.options import PaperOptions
+
+SHARE: dict[str, float] = {"gradient-limiting": 0.85, "size-preserving": 0.15}
+"""How the time is divided: one method uses all the iterations there are, the other a few."""
+
+
+@dataclass(frozen=True, eq=False)
+class Adaptation:
+    """One adaptive process of Section 5.1.
+
+    Parameters
+    ----------
+    mesher, method : str
+        What made the meshes, and what was done to the sizes.
+    evolution : Evolution
+        One row an iteration.
+    folder : Path
+        Where the meshes are.
+    """
+
+    mesher: str
+    method: str
+    evolution: Evolution
+    folder: Path
+
+    def last_mesh(self) -> MeshFile:
+        """Return the last mesh, with its cell arrays."""
+        return read_mesh(self.folder / self.evolution.iterations[-1].mesh)
+
+
+def adaptations(options: PaperOptions, folder: Path, monitor: Monitor = SILENT) -> list[Adaptation]:
+    """Run the processes, or take them up where a folder of an earlier run holds them.
+
+    Raises
+    ------
+    InputError
+        If the folder holds processes of other options.
+    Cancelled
+        If the monitor says so; finished iterations stay.
+    """
+    source = load("ring")
+    found = []
+    for k, mesher in enumerate(options.meshers):
+        part = SubMonitor(monitor, k / len(options.meshers), (k + 1) / len(options.meshers))
+        begun = 0.0
+        for method in COMPARED:
+            asked = AdaptOptions(method=method, study=options.study(mesher), iterations=options.iterations)
+            place = folder / f"ring-{method}-{mesher}"
+            share = SubMonitor(part, begun, begun + SHARE[method])
+            found.append(Adaptation(mesher, method, adapted(source, asked, place, share), place))
+            begun += SHARE[method]
+    monitor.step(1.0)
+    return found

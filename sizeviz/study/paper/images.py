@@ -1,0 +1,70 @@
+"""Section 5.2: sizes from the curvature of an image, by both methods and every mesher."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.sources import load
+from sizeviz.study.pipeline import COMPARED, run
+from sizeviz.study.study import MethodRun, Study
+
+if TYPE_CHECKING:
+    from sizeviz.sources import Source
+    from sizeviz.study.options import StudyOptions
+    from sizeviz.study.paper.options import PaperOptions
+
+EQUAL_COUNT = "gradient-limiting, equal count"
+"""Gradient limiting once more, at the mesh scale that gives it as many elements as size preserving has."""
+
+
+@dataclass(frozen=True, eq=False)
+class ImageRun:
+    """One image meshed by one mesher.
+
+    Parameters
+    ----------
+    source : Source
+        The image and its sizes.
+    mesher : str
+        What made the meshes.
+    runs : dict of str to MethodRun
+        By method; and gradient limiting at equal count under ``EQUAL_COUNT``.
+    """
+
+    source: Source
+    mesher: str
+    runs: dict[str, MethodRun]
+
+
+def image_runs(name: str, options: PaperOptions, monitor: Monitor = SILENT) -> list[ImageRun]:
+    """Mesh an example that has an image.
+
+    Raises
+    ------
+    InputError
+        If there is no such example.
+    Cancelled
+        If the monitor says so.
+    """
+    source = load(name)
+    found = []
+    for k, mesher in enumerate(options.meshers):
+        part = SubMonitor(monitor, k / len(options.meshers), (k + 1) / len(options.meshers))
+        asked = options.study(mesher)
+        study = run(Study(source, asked), COMPARED, SubMonitor(part, 0.0, 0.6))
+        runs = {method: study.runs[method] for method in COMPARED}
+        runs[EQUAL_COUNT] = _equal_count(source, asked, runs, SubMonitor(part, 0.6, 1.0))
+        found.append(ImageRun(source, mesher, runs))
+    return found
+
+
+def _equal_count(source: Source, asked: StudyOptions, runs: dict[str, MethodRun], monitor: Monitor) -> MethodRun:
+    limiting, preserving = runs["gradient-limiting"].report, runs["size-preserving"].report
+    assert limiting is not None and preserving is not None
+    scale = asked.mesh.scale * (limiting.n_quads / preserving.n_quads) ** 0.5
+    finer = replace(asked, mesh=replace(asked.mesh, scale=scale))
+    method = "gradient-limiting"
+    begun = MethodRun(target=runs[method].target)
+    return run(Study(source, finer, {method: begun}), (method,), monitor).runs[method]
