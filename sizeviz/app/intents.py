@@ -41,6 +41,7 @@ def connect_panels(window: MainWindow) -> None:
     judge.measure_chosen.connect(lambda measure: _set_measure(window, measure))
     window.progress.cancel_requested.connect(controller.cancel)
     controller.study_changed.connect(lambda old, new: _on_study(window, old, new))
+    controller.store.stack.indexChanged.connect(lambda index: window.show_state())
     controller.preview_changed.connect(board.refresh)
     controller.busy_changed.connect(window.progress.show_busy)
     controller.busy_changed.connect(lambda busy: window.show_state())

@@ -57,13 +57,20 @@ DARK = Theme(
 ICONS = (Path(__file__).parent / "icons").as_posix()
 """Folder of the small pictures that the style sheet names."""
 
+APPLIED = "sizeviz-dark"
+"""Property of the application that says which theme it has."""
+
 THEMES = {"light": LIGHT, "dark": DARK}
 """The themes by name."""
 
 
 def apply_theme(app: QApplication, theme: Theme) -> None:
-    """Give the whole application a theme."""
-    app.setStyle("Fusion")
+    """Give the whole application a theme; what it has already is left alone, for polishing a window takes a while."""
+    if app.property(APPLIED) == theme.dark:
+        return
+    if app.property(APPLIED) is None:
+        app.setStyle("Fusion")
+    app.setProperty(APPLIED, theme.dark)
     app.setPalette(palette(theme))
     app.setStyleSheet(style_sheet(theme))
 

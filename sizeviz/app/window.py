@@ -83,6 +83,7 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.settings = settings or Settings()
         self.theme = THEMES.get(self.settings.theme, THEMES["light"])
+        apply_theme(QApplication.instance(), self.theme)  # before there is anything to polish
         self.controller = Controller(engine, self)
         self.actions_ = Actions(self)
         self.examples = list(engine.examples())
@@ -276,6 +277,8 @@ class MainWindow(QMainWindow):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Stop the worker, remember the layout, free VTK; in this order, so that nothing is used after it is gone."""
         self.controller.jobs.shut_down()
+        for sender in (self.controller.store.stack, self.controller.store, self.controller, self.controller.jobs):
+            sender.blockSignals(True)  # what is torn down from here on is nobody's news
         self.settings.save_layout(self)
         self.log.detach()
         self.board.dispose()

@@ -116,7 +116,7 @@ def draw_cells(
     rows = np.flatnonzero(inside(mesh, bounds))
     many = len(rows) > MOST_VECTORS
     colors = scale.colors(values[rows]) / 255.0
-    faces = PolyCollection(mesh.points[mesh.quads[rows]], facecolors=colors, edgecolors=colors, rasterized=many)
+    faces = PolyCollection(list(mesh.points[mesh.quads[rows]]), facecolors=colors, edgecolors=colors, rasterized=many)
     faces.set(linewidth=0.1, antialiased=not many)
     axes.add_collection(faces)
     bare(axes, bounds)

@@ -44,8 +44,10 @@ def ratio_words(ratios: NDArray[np.float64]) -> tuple[str, bool]:
 def quality_words(quality: NDArray[np.float64]) -> tuple[str, bool | None]:
     """Return the smallest and mean quality in words; False where an element is inverted or folded."""
     worst = int(np.argmin(quality))
-    words = f"quality mean {quality.mean():.3f}, worst {quality[worst]:.3f} at element {worst}"
-    return (words, None) if quality[worst] > 0 else (words + ", inverted", False)
+    words = f"mean quality {quality.mean():.3f}, worst {quality[worst]:.3f} at element {worst}"
+    if quality[worst] > 0:
+        return words, None
+    return f"{int((quality <= 0).sum())} inverted, {words}", False
 
 
 def percent(part: int, whole: int) -> str:

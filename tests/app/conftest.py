@@ -44,6 +44,8 @@ def flat_window(qtbot, engine, tmp_path):
     qtbot.addWidget(window)
     window.resize(1400, 900)
     window.show()
+    window.activateWindow()
+    qtbot.waitUntil(window.isActiveWindow, timeout=3000)
     yield window
     window.close()
 

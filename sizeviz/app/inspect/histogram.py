@@ -51,6 +51,7 @@ class HistogramPanel(QWidget):
         self._method = ""
         self._values: NDArray[np.float64] | None = None
         self._telling = True
+        self._has_selected = False
         self.title = QLabel(QUANTITIES[quantity])
         self.title.setProperty("role", "heading")
         self.count = QLabel("")
@@ -138,8 +139,11 @@ class HistogramPanel(QWidget):
             return
         if not self.range.isVisible() or self._values is None:
             self.count.setText("")
-            self.selected.emit(self._method, None)
+            if self._has_selected:
+                self._has_selected = False
+                self.selected.emit(self._method, None)
             return
+        self._has_selected = True
         low, high = self.range.getRegion()
         chosen = within(self._values, low, high, self.quantity)
         self.count.setText(f"{len(chosen):,} selected")
