@@ -38,6 +38,7 @@ TYPES: dict[str, str] = {
 
 _NAMES = {code: name for name, code in TYPES.items()}
 _APPENDED = re.compile(rb"<AppendedData\s+encoding\s*=\s*[\"'](raw|base64)[\"']\s*>\s*_", re.IGNORECASE)
+_MAX_COMPONENTS = 1000
 _COMPRESSORS = (None, "vtkZLibDataCompressor", "vtkLZMADataCompressor")
 
 
@@ -124,8 +125,15 @@ class Document:
             raise InputError(f"it has {len(pieces)} pieces; exactly one is supported: merge them when exporting")
         return pieces[0]
 
-    def arrays(self, section: ElementTree.Element | None) -> dict[str, NDArray[Any]]:
+    def arrays(self, section: ElementTree.Element | None, rows: int | None = None) -> dict[str, NDArray[Any]]:
         """Return the number arrays of a section such as ``PointData`` by name, vectors as rows.
+
+        Parameters
+        ----------
+        section : Element, optional
+            The section; none gives no arrays.
+        rows : int, optional
+            How many rows each must have: asked before anything is unpacked.
 
         Raises
         ------
@@ -133,62 +141,83 @@ class Document:
             If an array is corrupt.
         """
         found: Iterable[ElementTree.Element] = () if section is None else section.findall("DataArray")
-        return {e.get("Name") or f"array {k}": self._array(e) for k, e in enumerate(found)}
+        return {e.get("Name") or f"array {k}": self._array(e, rows) for k, e in enumerate(found)}
 
-    def _array(self, element: ElementTree.Element) -> NDArray[Any]:
+    def named(self, section: ElementTree.Element, name: str, rows: int) -> NDArray[np.int64]:
+        """Return a list of whole numbers of a known length.
+
+        Raises
+        ------
+        InputError
+            If it is missing or corrupt.
+        """
+        element = next((e for e in section.findall("DataArray") if e.get("Name") == name), None)
+        if element is None:
+            raise InputError(f"its {section.tag} have no {name}; the file is cut or corrupt")
+        values = self._array(element, rows)
+        if values.ndim != 1 or values.dtype.kind not in "iu":
+            raise InputError(f"its {name} are not a list of whole numbers; the file is corrupt")
+        return values.astype(np.int64)
+
+    def _array(self, element: ElementTree.Element, rows: int | None) -> NDArray[Any]:
         name, kind = one_line(element.get("Name"), 40), element.get("type", "")
         if kind not in TYPES:
             raise InputError(f"array {name!r} is of type {one_line(kind, 40)!r}, which is not read; export it again")
         components = whole(element.get("NumberOfComponents") or "1", f"components of {name!r}")
-        flat = self._values(element, np.dtype(self._order + TYPES[kind]), f"array {name!r}")
-        if components > 1:
-            if len(flat) % components:
-                raise InputError(f"array {name!r} has {len(flat)} values, not a multiple of {components}")
-            flat = flat.reshape(-1, components)
+        if not 1 <= components <= _MAX_COMPONENTS:
+            raise InputError(f"array {name!r} has {components} components; the file is corrupt")
+        count = None if rows is None else rows * components
+        flat = self._values(element, np.dtype(self._order + TYPES[kind]), count, f"array {name!r}")
+        if len(flat) % components or (count is not None and len(flat) != count):
+            raise InputError(f"array {name!r} has {len(flat)} values for {rows} rows of {components}; it is corrupt")
+        flat = flat.reshape(-1, components) if components > 1 else flat
         return flat.astype(flat.dtype.newbyteorder("="), copy=False)
 
-    def _values(self, element: ElementTree.Element, dtype: np.dtype[Any], what: str) -> NDArray[Any]:
+    def _values(self, element: ElementTree.Element, dtype: np.dtype[Any], count: int | None, what: str) -> NDArray[Any]:
         encoding, text = element.get("format", "ascii"), (element.text or "").strip().encode()
         if encoding == "ascii":
-            parsed = numbers(text, what, dtype=np.float64 if dtype.kind == "f" else np.int64)
-            return parsed.astype(dtype)
+            return numbers(text, what, count, np.float64 if dtype.kind == "f" else np.int64).astype(dtype)
         if encoding == "binary":
-            content = self._decoded(text, False, what)
+            data, is_raw = text, False
         elif encoding == "appended":
             offset = whole(element.get("offset") or "", f"offset of {what}")
             check_available(offset, len(self._appended), what)
-            content = self._decoded(self._appended[offset:], self._is_raw, what)
+            data, is_raw = self._appended[offset:], self._is_raw
         else:
             raise InputError(f"{what} has the unknown format {one_line(encoding, 40)!r}")
+        most = self._budget if count is None else min(count * dtype.itemsize, self._budget)
+        content = self._decoded(data, is_raw, most, what)
+        self._budget -= len(content)
         return np.frombuffer(content, dtype, len(content) // dtype.itemsize)
 
-    def _decoded(self, data: bytes, is_raw: bool, what: str) -> bytes:
-        """Return the bytes of one array that begins ``data``; what follows it belongs to others."""
+    def _decoded(self, data: bytes, is_raw: bool, most: int, what: str) -> bytes:
+        """Return the bytes of one array that begins ``data``, at most so many; what follows it belongs to others."""
         width = self._header.itemsize
         first = self._numbers(data, 1, is_raw, what)[0]
-        if self._compressor is None:
-            content = _taken(data, width + first, is_raw, what)[width:]
-        else:
-            content = self._unpacked(data, first, is_raw, what)
-        self._budget -= len(content)
-        if self._budget < 0:
-            raise InputError(f"its arrays unpack to more than {MAX_BYTES // 2**20} MiB; reduce the file")
-        return content
+        if self._compressor is not None:
+            return self._unpacked(data, first, is_raw, most, what)
+        check_available(first, most, what)
+        return _taken(data, width + first, is_raw, what)[width:]
 
-    def _unpacked(self, data: bytes, n_blocks: int, is_raw: bool, what: str) -> bytes:
+    def _unpacked(self, data: bytes, n_blocks: int, is_raw: bool, most: int, what: str) -> bytes:
         width = self._header.itemsize
         check_available(n_blocks * width, len(data), what)
-        head = self._numbers(data, 3 + n_blocks, is_raw, what)
-        most, sizes = min(max(head[1], head[2]), self._budget), head[3:]
+        _, size, last, *packed_sizes = self._numbers(data, 3 + n_blocks, is_raw, what)
+        sizes = [size] * n_blocks
+        if n_blocks and last:
+            sizes[-1] = last
+        if sum(sizes) > most:
+            raise InputError(
+                f"{what} unpacks to {sum(sizes)} bytes, more than the {most} expected; the file is corrupt"
+            )
         # The header is encoded by itself in base64, padding included.
         start = (3 + n_blocks) * width if is_raw else 4 * -(-((3 + n_blocks) * width) // 3)
-        packed = _taken(data[start:], sum(sizes), is_raw, what)
+        packed = _taken(data[start:], sum(packed_sizes), is_raw, what)
         parts: list[bytes] = []
-        at, left = 0, self._budget
-        for size in sizes:
-            parts.append(self._block(packed[at : at + size], min(most, left)))
-            left -= len(parts[-1])
-            at += size
+        at = 0
+        for announced, length in zip(sizes, packed_sizes, strict=True):
+            parts.append(self._block(packed[at : at + length], announced))
+            at += length
         return b"".join(parts)
 
     def _block(self, packed: bytes, limit: int) -> bytes:

@@ -10,7 +10,7 @@ from sizeviz.errors import InputError
 from sizeviz.files._vtk_xml import Document, data_array
 from sizeviz.files.guard import check_nodes, one_line
 from sizeviz.files.raw import Cells, RawGrid, RawMesh, grouped
-from sizeviz.files.text import indices, numbers
+from sizeviz.files.text import indices, numbers, whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -100,14 +100,15 @@ def _section(name: str, arrays: Any, tuples: bytes = b"") -> list[bytes]:
 def _unstructured(document: Document) -> RawMesh:
     piece = document.sole_piece()
     points = _points(document, piece)
-    arrays = document.arrays(piece.find("Cells"))
-    missing = [name for name in ("connectivity", "offsets", "types") if name not in arrays]
-    if missing:
-        raise InputError(f"its cells have no {missing[0]}; the file is cut or corrupt")
-    joined, offsets, kinds = (_whole(arrays[name]) for name in ("connectivity", "offsets", "types"))
-    cells = grouped(joined, np.concatenate([[0], offsets]), kinds, VTK_CELLS)
+    cells = piece.find("Cells")
+    if cells is None:
+        raise InputError("it holds no Cells; the file is cut or corrupt")
+    count = _count(piece, "NumberOfCells")
+    offsets, kinds = document.named(cells, "offsets", count), document.named(cells, "types", count)
+    joined = _connectivity(document, cells, offsets)
+    blocks = grouped(joined, np.concatenate([[0], offsets]), kinds, VTK_CELLS)
     field = document.arrays(document.body.find("FieldData") if document.body is not None else None)
-    return RawMesh(points, cells, _data(document, piece, "PointData"), _data(document, piece, "CellData"), field)
+    return RawMesh(points, blocks, *_data(document, piece, len(points), count), field)
 
 
 def _poly_data(document: Document) -> RawMesh:
@@ -116,14 +117,14 @@ def _poly_data(document: Document) -> RawMesh:
     cells: list[Cells] = []
     count = 0
     for section, code in POLY_SECTIONS:
-        arrays = document.arrays(piece.find(section))
-        if "connectivity" in arrays and "offsets" in arrays:
-            offsets = _whole(arrays["offsets"])
-            starts, kinds = np.concatenate([[0], offsets]), np.full(len(offsets), code)
-            groups = grouped(_whole(arrays["connectivity"]), starts, kinds, VTK_CELLS)
+        element, own = piece.find(section), _count(piece, f"NumberOf{section}", 0)
+        if element is not None and own:
+            offsets = document.named(element, "offsets", own)
+            starts, kinds = np.concatenate([[0], offsets]), np.full(own, code)
+            groups = grouped(_connectivity(document, element, offsets), starts, kinds, VTK_CELLS)
             cells += [Cells(group.kind, group.rows, group.index + count) for group in groups]
-            count += len(offsets)
-    return RawMesh(points, tuple(cells), _data(document, piece, "PointData"), _data(document, piece, "CellData"))
+        count += own
+    return RawMesh(points, tuple(cells), *_data(document, piece, len(points), count))
 
 
 def _image_data(document: Document) -> RawGrid:
@@ -141,8 +142,8 @@ def _image_data(document: Document) -> RawGrid:
     nx, ny, nz = (int(n) for n in extent[1::2] - extent[0::2] + 1)
     for n in (nx, ny, nz):
         check_nodes(n, "points along an axis")
-    points, cells = _data(document, piece, "PointData"), _data(document, piece, "CellData")
-    return RawGrid((nx, ny, nz), origin, spacing, points, cells)
+    n_cells = max(nx - 1, 1) * max(ny - 1, 1) * max(nz - 1, 1)
+    return RawGrid((nx, ny, nz), origin, spacing, *_data(document, piece, nx * ny * nz, n_cells))
 
 
 def _attribute(element: Element, name: str, default: NDArray[Any] | None, count: int) -> NDArray[Any]:
@@ -155,18 +156,32 @@ def _attribute(element: Element, name: str, default: NDArray[Any] | None, count:
     return parse_words(text.encode(), name, count)
 
 
-def _data(document: Document, piece: Element, section: str) -> dict[str, NDArray[Any]]:
-    return document.arrays(piece.find(section))
+def _data(
+    document: Document, piece: Element, n_points: int, n_cells: int
+) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:
+    """Return the arrays of points and of cells."""
+    return document.arrays(piece.find("PointData"), n_points), document.arrays(piece.find("CellData"), n_cells)
+
+
+def _count(piece: Element, name: str, default: int | None = None) -> int:
+    text = piece.get(name)
+    if text is None and default is not None:
+        return default
+    count = whole(text or "", name)
+    check_nodes(count, name, 2**31)
+    return count
 
 
 def _points(document: Document, piece: Element) -> NDArray[np.float64]:
-    points = next(iter(document.arrays(piece.find("Points")).values()), None)
+    count = _count(piece, "NumberOfPoints")
+    check_nodes(count, "points")
+    points = next(iter(document.arrays(piece.find("Points"), count).values()), None)
     if points is None or points.ndim != 2 or points.shape[1] != 3:
         raise InputError("it has no points with three coordinates; the file is cut or corrupt")
     return points.astype(np.float64)
 
 
-def _whole(values: NDArray[Any]) -> NDArray[np.int64]:
-    if values.ndim != 1 or values.dtype.kind not in "iu":
-        raise InputError("its connectivity is not a list of whole numbers; the file is corrupt")
-    return values.astype(np.int64)
+def _connectivity(document: Document, section: Element, offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+    count = int(offsets[-1]) if len(offsets) else 0
+    check_nodes(count, "corners of cells", 2**31)
+    return document.named(section, "connectivity", count)
