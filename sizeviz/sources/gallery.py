@@ -16,6 +16,7 @@ from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sources.analytic_examples import ring, valley
 from sizeviz.sources.approximation import approximated
 from sizeviz.sources.formula import Formula
+from sizeviz.sources.phantom import phantom
 from sizeviz.sources.picture_examples import coast, mri, terrain
 from sizeviz.sources.pictures import extent, size_from_curvature, size_from_intensity
 from sizeviz.sources.source import Source
@@ -73,6 +74,12 @@ _EXAMPLES = (
         "MRI slice of a head, sizes from its curvature (as section 5.2)",
         "Small elements where the image bends, on 513 x 513 nodes; the interpolation error shows what they are for.",
         mri,
+    ),
+    Example(
+        "phantom",
+        "Synthetic cardiac phantom, sizes from its curvature (as section 5.2)",
+        "A drawn slice through a chest, of nobody: heart, lungs and fat with soft edges, on 513 x 513 nodes.",
+        phantom,
     ),
     Example(
         "terrain",
