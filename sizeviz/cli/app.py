@@ -33,6 +33,7 @@ app = App(
     help="See a mesh size field, limit it, preserve it, and mesh it with quadrilaterals that honour it.",
     version=__version__,
     help_format="plaintext",
+    suppress_keyboard_interrupt=False,
 )
 for _order, (_name, (_where, _help)) in enumerate(COMMANDS.items()):
     app.command(_where, name=_name, help=_help, sort_key=_order)

@@ -28,14 +28,16 @@ def print_report(report: Mapping[str, Any]) -> None:
     """Print the table of a report, as ``report.json`` holds it."""
     methods = report["methods"]
     title = f"{report['source']['label']} · mesh scale {report['options']['mesh_scale']:g}"
-    table = Table(title=title, box=SIMPLE_HEAD, title_justify="left", title_style="bold")
+    table = Table(box=SIMPLE_HEAD)
     table.add_column("")
     for method in methods:
         table.add_column(TITLES.get(method, method), justify="right")
     columns = [_cells(entry) for entry in methods.values()]
     for label in columns[0]:
         table.add_row(label, *(column[label] for column in columns))
-    console().print(table)
+    out = console()
+    out.print(title, style="bold", highlight=False)
+    out.print(table)
 
 
 def console() -> Console:
