@@ -82,7 +82,7 @@ def check(mesh: QuadMesh, domain: Domain) -> None:
     assert np.array_equal(rim, np.flatnonzero((mesh.curve >= 0) & on_boundary[mesh.curve]))
     for index, curve in enumerate(domain.curves):
         path = shapely.LineString(np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points)
-        assert shapely.distance(shapely.points(mesh.points[mesh.curve == index]), path).max() < 1e-12
+        assert shapely.distance(shapely.points(mesh.points[mesh.curve == index]), path).max(initial=0.0) < 1e-12
     for loop, corners in zip(domain.loops, domain.corners, strict=True):
         for point in loop[corners]:
             assert (mesh.fixed & (mesh.points == point).all(axis=1)).sum() == 1

@@ -13,6 +13,7 @@ from sizeviz.geometry import QuadMesh
 from sizeviz.geometry.delaunay import Triangulation, hilbert_order, triangulated
 from sizeviz.meshing.checks import verify
 from sizeviz.meshing.frontal.boundary import Outline, outline
+from sizeviz.meshing.frontal.mending import mended
 from sizeviz.meshing.frontal.packing import packed, seeded
 from sizeviz.meshing.frontal.pairing import paired
 from sizeviz.meshing.frontal.region import region_arrays
@@ -45,7 +46,7 @@ class Frontal:
         """Return a raw all-quadrilateral mesh; see `sizeviz.meshing.generated`."""
         if options.preset == "direct":
             rim, mesh = _triangulation(domain, size, options, SubMonitor(monitor, 0.0, 0.7))
-            quads, single = paired(mesh, SubMonitor(monitor, 0.7, 0.95))
+            mesh, quads, single = mended(mesh, SubMonitor(monitor, 0.7, 0.95))
             if not len(single):
                 return _checked(mesh.points, quads, rim)
         coarse = replace(options, scale=2.0 * options.scale)
