@@ -23,30 +23,41 @@ from sizeviz.improvement._operation_kernels import (
 from sizeviz.improvement._star_kernels import node_step
 from sizeviz.sizing._kernels import size_at
 
-SWEEPS = 15
-"""Most sweeps of the cavity and its ring before an operation is judged."""
+CORE_SWEEPS = 2
+"""Sweeps of the cavity alone."""
+SWEEPS = 10
+"""Most sweeps of the cavity and its ring after that; further ones were measured to change no verdict."""
+AFTER_SWEEPS = 8
+"""Most sweeps around an operation that stands."""
+REACHABLE = 10.0
+"""Decrease that may still be missing after the core sweeps; a fifth of it after each sweep more."""
+
+
+@compiled
+def corner_sums(q, xy, quads, scale, objective, delta2):
+    """Return an element's distortion, smallest sigma, sum of |S|^2 / sigma and longest edge^2 over target^2."""
+    total, low, shape, longest = 0.0, math.inf, 0.0, 0.0
+    for k in range(4):
+        v, w, p = quads[q, k], quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
+        ax, ay, bx, by = xy[w, 0] - xy[v, 0], xy[w, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
+        sigma = (ax * by - ay * bx) * scale
+        a2 = (ax * ax + ay * ay) * scale
+        square = a2 + (bx * bx + by * by) * scale
+        low, longest = min(low, sigma), max(longest, a2)
+        shape += square / sigma
+        total += square * value(sigma, objective, delta2)
+    return total, low, shape, longest
 
 
 @compiled
 def element_measures(q, patch, inv, objective):
     """Return an element's distortion above 4, smallest sigma, shape quality and longest edge^2 over target^2."""
     xy, quads = patch[0], patch[1]
-    low, longest, shape = math.inf, 0.0, 0.0
-    for turn in range(2):
-        delta2 = delta_squared(low) if turn == 1 else 0.0
-        total = -4.0
-        for k in range(4):
-            v, w, p = quads[q, k], quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
-            ax, ay, bx, by = xy[w, 0] - xy[v, 0], xy[w, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
-            sigma = (ax * by - ay * bx) * inv[q]
-            a2 = (ax * ax + ay * ay) * inv[q]
-            square = a2 + (bx * bx + by * by) * inv[q]
-            if turn == 0:
-                low, longest = min(low, sigma), max(longest, a2)
-                shape += square / sigma
-            else:
-                total += square * value(sigma, objective, delta2)
-    return total, low, 8.0 / shape if low > 0.0 else 0.0, longest
+    total, low, shape, longest = corner_sums(q, xy, quads, inv[q], objective, 0.0)
+    delta2 = delta_squared(low)
+    if delta2 > 0.0:
+        total = corner_sums(q, xy, quads, inv[q], objective, delta2)[0]
+    return total - 4.0, low, 8.0 / shape if low > 0.0 else 0.0, longest
 
 
 @compiled
@@ -124,18 +135,32 @@ def aim_elements(region, n, patch, aims):
 
 
 @compiled
-def relax(nodes, n, patch, aims, law, rails, star, hope):
-    """Sweep the nodes until they settle or the decrease hoped for is out of reach; return the decrease."""
-    total = 0.0
-    for s in range(SWEEPS):
+def relax(nodes, n, n_core, patch, aims, law, rails, star, hope):
+    """Sweep the cavity, then the cavity and its ring, until the nodes settle or too much of the decrease is missing.
+
+    ``hope`` is the decrease that the operation still needs. Returns whether it stayed within reach.
+    """
+    for s in range(CORE_SWEEPS + SWEEPS):
+        step = 0.0
+        for i in range(n_core if s < CORE_SWEEPS else n):
+            step += node_step(nodes[i], patch, aims[2], aims[4], law, rails, star)
+        hope -= step
+        if s >= CORE_SWEEPS - 1 and hope > max(REACHABLE / 5.0 ** (s - CORE_SWEEPS + 1), 3.0 * step):
+            return False
+        if s >= CORE_SWEEPS and step < 0.01:
+            return True
+    return True
+
+
+@compiled
+def finish(nodes, n, patch, aims, law, rails, star):
+    """Let the surroundings of an operation that stands settle, which makes room for the next one."""
+    for _ in range(AFTER_SWEEPS):
         step = 0.0
         for i in range(n):
             step += node_step(nodes[i], patch, aims[2], aims[4], law, rails, star)
-        total += step
-        left = SWEEPS - 1 - s
-        if step < 1e-4 or (s >= 2 and total + step * min(left, 4) < hope):
+        if step < 0.02:
             break
-    return total
 
 
 @compiled
@@ -225,7 +250,7 @@ def attempt(kind, code, arg, change, patch, topo, marks, aims, rails, law, room,
     for i in range(n_spots):
         v = int(spots[i, 0])
         patch[0][v, 0], patch[0][v, 1] = spots[i, 1], spots[i, 2]
-    if fits and relaxed_better(before, change, n, n_new, patch, marks, aims, rails, law, room, tops):
+    if fits and relaxed_better(before, change, n_core, n, n_new, patch, marks, aims, rails, law, room, tops):
         settle(kind, n_old, n_new, n_core, patch[3], room, tops)
         return n
     restore_links(old, n_old, core, n_core, slots, n_new, patch, kept)
@@ -234,7 +259,7 @@ def attempt(kind, code, arg, change, patch, topo, marks, aims, rails, law, room,
 
 
 @compiled
-def relaxed_better(before, change, n, n_new, patch, marks, aims, rails, law, room, tops):
+def relaxed_better(before, change, n_core, n, n_new, patch, marks, aims, rails, law, room, tops):
     """Relax around a change just made and judge it."""
     slots, nodes, region, star = room[4], room[6], room[13], room[9]
     aim_elements(slots, n_new, patch, aims)
@@ -244,9 +269,13 @@ def relaxed_better(before, change, n, n_new, patch, marks, aims, rails, law, roo
         return False
     raw = measure(region, n_after, patch, aims[2], law[0])
     hope = raw[0] - before[0] + law[1] * change
-    relax(nodes, n, patch, aims, (law[0], 0.0), rails, star, hope)
+    if not relax(nodes, n, n_core, patch, aims, (law[0], 0.0), rails, star, hope):
+        return False
     aim_elements(region, n_after, patch, aims)
-    return better(before, measure(region, n_after, patch, aims[2], law[0]), change, law)
+    if not better(before, measure(region, n_after, patch, aims[2], law[0]), change, law):
+        return False
+    finish(nodes, n, patch, aims, (law[0], 0.0), rails, star)
+    return True
 
 
 @compiled

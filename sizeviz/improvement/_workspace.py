@@ -10,7 +10,7 @@ import numpy as np
 from sizeviz.errors import InputError
 from sizeviz.geometry.arrays import read_only
 from sizeviz.geometry.quadmesh import QuadMesh
-from sizeviz.improvement import _curve_kernels, _energy_kernels, _mesh_kernels, _sweep_kernels
+from sizeviz.improvement import _curve_kernels, _energy_kernels, _mesh_kernels, _sweep_kernels, _worst_kernels
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.threads import run_chunks
 
@@ -28,6 +28,10 @@ OBJECTIVES = {
 }
 BLOCK = 512
 """Consecutive nodes of the Hilbert order that one thread moves in one go."""
+LIFTS = 12
+"""Passes over the worst elements."""
+LARGEST_STRETCH = 1.4
+"""Longest edge over target size that raising the worst elements may leave, unless it was longer."""
 SPARE_CORNERS = 4
 """Columns of the adjacency table beyond the largest valence found."""
 FREE, STUCK = -1, -2
@@ -152,6 +156,13 @@ class Workspace:
     def _sweep_part(self, first: int, last: int, blocks: NDArray[np.int64], law: tuple[int, float]) -> None:
         _sweep_kernels.sweep_blocks(
             first, last, blocks, BLOCK, self.patch, self.inv, self.bound, law, self.rails, self.gain,
+        )  # fmt: skip
+
+    def lift(self, floor: float) -> int:
+        """Move the nodes of elements whose quality is below ``floor``; return how many remain below."""
+        self.aim()
+        return _worst_kernels.lift_worst(
+            floor, LARGEST_STRETCH**2, LIFTS, self.patch, self.inv, self.bound, self.rails
         )  # fmt: skip
 
     def moved(self, mesh: QuadMesh) -> QuadMesh:

@@ -48,10 +48,12 @@ def improved(
     work = Workspace(mesh, domain, size, options)
     if not options.cleanup:
         work.sweep(options.sweeps, monitor)
+        work.lift(options.floor)
         return work.moved(mesh)
     work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
     clean_fast(work, SubMonitor(monitor, 0.05, 0.2))
     work.sweep(4, SubMonitor(monitor, 0.2, 0.3))
     clean_wide(work, options.rounds, SubMonitor(monitor, 0.3, 0.85))
     work.sweep(options.sweeps, SubMonitor(monitor, 0.85, 1.0))
+    work.lift(options.floor)
     return work.result()

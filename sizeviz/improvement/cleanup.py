@@ -34,8 +34,8 @@ MOST_NODES = 200
 MOST_REGION = 300
 WORTH = 0.5
 """Distortion that one unit of valence energy is worth."""
-LOWEST_QUALITY = 0.35
-LARGEST_STRETCH = 1.5
+LOWEST_QUALITY = 0.55
+LARGEST_STRETCH = 2.2
 """Longest edge over target size that an operation may leave, unless it was larger before."""
 BUDGET = 256
 """Nodes visited between two looks at the monitor."""
@@ -198,6 +198,6 @@ def clean_wide(work: Workspace, rounds: int, monitor: Monitor = SILENT) -> None:
         part = SubMonitor(monitor, n / rounds, (n + 1) / rounds)
         cleaner = Cleaner(work, shift=n % 2 == 0)
         cleaner.run(-1, 6, SubMonitor(part, 0.0, 0.2))
-        cleaner.run(0, 3, SubMonitor(part, 0.2, 0.8))
+        cleaner.run(0, 4, SubMonitor(part, 0.2, 0.8))
         work.compact()
         work.sweep(3, SubMonitor(part, 0.8, 1.0))
