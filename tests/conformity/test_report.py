@@ -92,6 +92,8 @@ def test_minimum_over_elements_is_that_of_dense_samples(name, scale):
     weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
     for quad, least in zip(quads, found, strict=True):
         where = weights.T @ points[quad]
+        if name == "frame":  # over the hole only the corners of an element count
+            where = np.vstack([points[quad], where[(np.abs(where - 0.5) >= 0.125).any(axis=1)]])
         sampled = field.at(where).min()
         assert least <= sampled * (1 + 1e-12)
         # no sample is further than this from the minimum, and the field is no steeper than that
