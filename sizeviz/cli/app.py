@@ -21,6 +21,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "compare": ("sizeviz.cli.compare:compare", "Gradient limiting beside size preserving, like with like."),
     "run": ("sizeviz.cli.single:run", "One pipeline: process the field, mesh, smooth, judge."),
     "adapt": ("sizeviz.cli.adapt:adapt", "The adaptive process: each mesh is the background of the next."),
+    "paper": ("sizeviz.cli.paper:paper", "Every figure and table of the paper, our numbers beside the published ones."),
     "field": ("sizeviz.cli.field:field", "Write the processed size field only."),
     "shot": ("sizeviz.cli.shot:shot", "A picture or vector figure of a mesh."),
     "examples": ("sizeviz.cli.gallery:examples", "List the examples."),

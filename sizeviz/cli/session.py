@@ -59,7 +59,7 @@ def carried_out(
         warn_about_beta(options.beta)
         drawable = aside.submit(probe)
         with progress() as monitor:
-            study = run(study, methods, _prepared(monitor))
+            study = run(study, methods, prepared(monitor))
             monitor.step(1.0, "writing")
             for method in methods:
                 name = f"mesh-{method}.vtu" if comparison else "mesh.vtu"
@@ -76,7 +76,7 @@ def carried_out(
     return report
 
 
-def _prepared(monitor: Monitor) -> Monitor:
+def prepared(monitor: Monitor) -> Monitor:
     """Compile the kernels if this machine has not yet; return what is left of the monitor for the work itself."""
     if are_compiled():
         return monitor
