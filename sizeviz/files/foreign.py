@@ -12,6 +12,8 @@ from sizeviz.files.convert import in_space
 from sizeviz.files.guard import load
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from sizeviz.files.meshfile import MeshFile
 
 FORMATS: dict[str, str] = {
@@ -24,8 +26,8 @@ FORMATS: dict[str, str] = {
 """Suffixes, and meshio's name of each format."""
 
 
-def written(content: MeshFile, suffix: str) -> list[bytes]:
-    """Return the file that meshio writes for a mesh; formats that keep no arrays hold the mesh alone."""
+def written(content: MeshFile, suffix: str) -> Iterator[bytes]:
+    """Yield the file that meshio writes for a mesh; formats that keep no arrays hold the mesh alone."""
     import meshio
 
     mesh = content.mesh
@@ -35,4 +37,4 @@ def written(content: MeshFile, suffix: str) -> list[bytes]:
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
         path = Path(folder) / f"mesh{suffix}"
         meshio.write(path, whole, file_format=FORMATS[suffix])
-        return [load(path)]
+        yield load(path)

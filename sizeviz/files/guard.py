@@ -55,14 +55,17 @@ def load(path: str | Path, limit: int = MAX_BYTES) -> bytes:
     try:
         # Without O_NONBLOCK, opening a pipe that nobody writes to would wait for ever.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        with open(handle, "rb") as file:
+        try:
             status = os.fstat(handle)
             if not stat.S_ISREG(status.st_mode):
                 what = "a folder" if stat.S_ISDIR(status.st_mode) else "not an ordinary file"
                 raise InputError(f"{name}: this is {what}; give a file")
             if status.st_size > limit:
                 raise InputError(f"{name}: {_mib(status.st_size)} exceeds the limit of {_mib(limit)}; reduce the file")
-            data = file.read(limit)
+            with open(handle, "rb", closefd=False) as file:
+                data = file.read(limit)
+        finally:
+            os.close(handle)
     except OSError as error:
         raise InputError(
             f"cannot read {name}: {_READ_ERRORS.get(error.errno or 0, error.strerror or error)}"

@@ -115,7 +115,7 @@ def arc(
         rx, ry = rx * reach, ry * reach
     unit = complex(half.real / rx, half.imag / ry)
     height = np.sqrt(max(1.0 / max(abs(unit) ** 2, 1e-300) - 1.0, 0.0))
-    centre = unit * height * 1j * (-1 if large == sweep else 1)
+    centre = unit * height * 1j * (1 if large == sweep else -1)
     first, last = np.angle(unit - centre), np.angle(-unit - centre)
     if sweep:
         angle = (last - first) % (2 * np.pi)
