@@ -67,14 +67,15 @@ class PipelineEngine:
         """Return the gallery of examples that every install can show."""
         from sizeviz.sources import examples
 
-        return [Example(entry.name, entry.label, entry.description) for entry in examples()]
+        return [
+            Example(entry.name, title_of(entry.name), f"{entry.label}. {entry.description}") for entry in examples()
+        ]
 
     def load(self, spec: str, monitor: Monitor = SILENT) -> Source:
         """Return an example, a file or ``expr:FORMULA`` as a source."""
         from sizeviz.sources import load
 
-        monitor.step(0.0, f"reading {spec}")
-        return load(spec)
+        return load(spec, monitor=monitor)
 
     def canvas(self, nodes: int, size: float) -> Source:
         """Return a blank canvas: one size everywhere on the unit square, ``nodes`` along each side."""
@@ -118,6 +119,11 @@ class PipelineEngine:
         from sizeviz.study import StudyOptions
 
         return StudyOptions().with_comparable_slope()
+
+
+def title_of(name: str) -> str:
+    """Return an example's name as the gallery writes it."""
+    return name.upper() if len(name) <= 3 else name.replace("-", " ").capitalize()
 
 
 def with_field(source: Source, field: SizeField, strokes: int) -> Source:

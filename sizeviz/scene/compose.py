@@ -202,12 +202,25 @@ def _mesh_layers(
     ]
     failing = _failing(subject, view)
     if len(failing):
-        lines = outline_segments(mesh.quads[failing])
-        layers.append(LineLayer("failing", mesh.points, lines, FAILING_LINE[view.dark], 1.0))
+        layers += _failing_lines(mesh, failing, scale.colors(values[failing]), view.dark)
     if selected is not None and len(selected):
         chosen = selected[selected < mesh.n_quads]
         layers.append(LineLayer("selected", mesh.points, outline_segments(mesh.quads[chosen]), SELECTED_LINE, 2.0))
     return layers, scale
+
+
+def _failing_lines(mesh: QuadMesh, failing: NDArray[np.intp], colors: NDArray[np.uint8], dark: bool) -> list[Layer]:
+    """Return the outlines of failing elements.
+
+    From afar they have the elements' own colours and are a pixel wide, so that no element is too small to be seen and
+    none looks worse than it is; near by they have a colour that stands out.
+    """
+    lines = outline_segments(mesh.quads[failing])
+    own = np.repeat(colors, 4, axis=0)
+    return [
+        LineLayer("failing", mesh.points, lines, FAILING_LINE[dark], 1.0, own),
+        LineLayer("failing-near", mesh.points, lines, FAILING_LINE[dark], 1.6, near=True),
+    ]
 
 
 def _failing(subject: Subject, view: ViewState) -> NDArray[np.intp]:

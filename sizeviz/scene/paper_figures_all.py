@@ -44,7 +44,7 @@ def save_figures(
         If the monitor says so; figures that are finished stay.
     """
     norms: Norms = {}
-    jobs = [partial(save_line_figures, line, folder), *_adaptation_jobs(ring, folder)]
+    jobs: list[Job] = [partial(save_line_figures, line, folder), *_adaptation_jobs(ring, folder)]
     for k, (source, found) in enumerate(images.items()):
         jobs += _image_jobs(found, folder, "" if k == 0 else f"-{source}")
         norms |= {

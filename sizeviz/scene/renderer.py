@@ -47,6 +47,7 @@ class Renderer:
             self._remove(name)
         for order, layer in enumerate(spec.layers):
             self._show_layer(layer, order)
+        self.show_edges(any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers))
         self.spec = spec
 
     def look(self, camera: Camera2D) -> None:
@@ -61,10 +62,12 @@ class Renderer:
             self._shown[name][2].SetPosition(0.0, 0.0, order * LIFT * camera.height)
 
     def show_edges(self, visible: bool) -> None:
-        """Draw or hide the element edges without composing anew."""
+        """Draw or hide the element edges, and what goes with them, without composing anew."""
         for layer, _, actor in self._shown.values():
             if isinstance(layer, CellLayer):
                 actor.prop.SetEdgeVisibility(visible)
+            elif isinstance(layer, LineLayer) and layer.near:
+                actor.SetVisibility(visible)
 
     def _show_layer(self, layer: Layer, order: int) -> None:
         old = self._shown.get(layer.name)
@@ -82,7 +85,6 @@ class Renderer:
         if isinstance(layer, CellLayer) and isinstance(old[0], CellLayer):
             if layer.colors is not old[0].colors and not np.array_equal(layer.colors, old[0].colors):
                 data.cell_data["rgb"] = layer.colors
-            actor.prop.SetEdgeVisibility(layer.edges is not None)
             if layer.edges is not None:
                 actor.prop.SetEdgeColor(*_unit(layer.edges))
         elif isinstance(layer, TriangleLayer):
@@ -92,6 +94,8 @@ class Renderer:
         elif isinstance(layer, LineLayer):
             actor.prop.SetColor(*_unit(layer.color))
             actor.prop.SetLineWidth(layer.width)
+            if layer.colors is not None:
+                data.cell_data["rgb"] = layer.colors
         self._shown[layer.name] = (layer, data, actor)
 
     def _add(self, layer: Layer, data: Any, texture: Any) -> Any:
@@ -105,11 +109,10 @@ class Renderer:
         }
         if isinstance(layer, ImageLayer):
             return self._plotter.add_mesh(data, texture=texture, **common)
-        if isinstance(layer, LineLayer):
+        if isinstance(layer, LineLayer) and layer.colors is None:
             return self._plotter.add_mesh(data, color=_unit(layer.color), line_width=layer.width, **common)
         actor = self._plotter.add_mesh(data, scalars="rgb", rgb=True, line_width=1.0, **common)
         if isinstance(layer, CellLayer):
-            actor.prop.SetEdgeVisibility(layer.edges is not None)
             actor.prop.SetEdgeColor(*_unit(layer.edges or (40, 40, 40)))
             actor.prop.SetEdgeOpacity(EDGE_OPACITY)
         return actor
@@ -128,7 +131,8 @@ def _same_geometry(old: Layer, new: Layer) -> bool:
     if isinstance(old, ImageLayer) and isinstance(new, ImageLayer):
         return old.bounds == new.bounds and old.colors.shape == new.colors.shape
     if isinstance(old, LineLayer) and isinstance(new, LineLayer):
-        return old.points is new.points and np.array_equal(old.segments, new.segments)
+        alike = (old.colors is None) == (new.colors is None)
+        return alike and old.points is new.points and np.array_equal(old.segments, new.segments)
     return False
 
 
@@ -141,7 +145,10 @@ def _dataset(layer: Layer) -> tuple[Any, Any]:
     if isinstance(layer, LineLayer):
         used, segments = np.unique(layer.segments, return_inverse=True)
         lines = np.column_stack([np.full(len(layer.segments), 2), segments.reshape(-1, 2)])
-        return pyvista.PolyData(_raised(layer.points[used]), lines=lines.ravel()), None
+        data = pyvista.PolyData(_raised(layer.points[used]), lines=lines.ravel())
+        if layer.colors is not None:
+            data.cell_data["rgb"] = layer.colors.copy()
+        return data, None
     cells = layer.quads if isinstance(layer, CellLayer) else layer.triangles
     data = pyvista.PolyData.from_regular_faces(_raised(layer.points), cells)
     target = data.cell_data if isinstance(layer, CellLayer) else data.point_data

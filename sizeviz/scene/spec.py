@@ -86,7 +86,7 @@ class ImageLayer:
 
 @dataclass(frozen=True, eq=False)
 class LineLayer:
-    """Line segments of one colour.
+    """Line segments.
 
     Parameters
     ----------
@@ -97,9 +97,13 @@ class LineLayer:
     segments : (S, 2) int32
         Ends of each segment.
     color : Color
-        Colour of every segment.
+        Colour of every segment that has none of its own.
     width : float
         Thickness in pixels.
+    colors : (S, 3) uint8, optional
+        A colour for each segment.
+    near : bool
+        Whether the lines are drawn only where element edges are: near enough to tell one element from the next.
     """
 
     name: str
@@ -107,6 +111,8 @@ class LineLayer:
     segments: NDArray[np.int32]
     color: Color
     width: float = 1.0
+    colors: NDArray[np.uint8] | None = None
+    near: bool = False
 
 
 Layer = CellLayer | TriangleLayer | ImageLayer | LineLayer

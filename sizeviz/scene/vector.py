@@ -55,7 +55,10 @@ def save_vector(spec: SceneSpec, path: Path, *, width: float = 7.0) -> Path:
     axes = figure.add_axes((0.03, 0.94 - 0.94 * share, 0.94, 0.94 * share))
     axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
     axes.set_axis_off()
+    near = any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers)
     for layer in spec.layers:
+        if isinstance(layer, LineLayer) and layer.near and not near:
+            continue
         _DRAW[type(layer)](axes, layer)
     ink = _unit(spec.ink)
     figure.text(0.03, 0.965, spec.title, color=ink, fontsize=11, fontweight="bold")
@@ -114,7 +117,8 @@ def _lines(axes: Any, layer: LineLayer) -> None:
     from matplotlib.collections import LineCollection
 
     lines = list(layer.points[layer.segments])
-    axes.add_collection(LineCollection(lines, colors=[_unit(layer.color)], linewidths=0.5 * layer.width, clip_on=False))
+    colors: Any = [_unit(layer.color)] if layer.colors is None else layer.colors / 255.0
+    axes.add_collection(LineCollection(lines, colors=colors, linewidths=0.5 * layer.width, clip_on=False))
 
 
 _DRAW: dict[type, Any] = {CellLayer: _cells, TriangleLayer: _triangles, ImageLayer: _image, LineLayer: _lines}

@@ -63,7 +63,9 @@ class SourcePanel(Form):
         nodes = len(source.field.sizes)
         strokes = source.provenance.get("strokes", 0)
         painted = f" · {strokes} stroke{'s' if strokes != 1 else ''} painted" if strokes else ""
-        self.now.setText(f"<b>{source.label}</b><br>{nodes:,} nodes{painted}")
+        title, _, rest = source.label.partition(": ")
+        self.now.setText(f"<b>{title}</b><br>{nodes:,} nodes{painted}")
+        self.now.setToolTip(rest or title)
 
     def _lay_out(self) -> None:
         self.add_wide(self.now)

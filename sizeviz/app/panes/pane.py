@@ -103,6 +103,7 @@ class Pane(QFrame):
         self.bar.set_scale(spec.scale)
         self.detail.setText(spec.detail)
         self.detail.setToolTip(spec.detail)
+        self.method.setToolTip(f"{spec.title}: {spec.detail}")
         self._say(spec)
         self.badge.setVisible(stale and spec.scale is not None)
 
