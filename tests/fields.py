@@ -38,10 +38,10 @@ def as_triangles(field: SizeField) -> SizeField:
     return SizeField(BackgroundMesh(background.points, background.triangles), field.sizes, field.label)
 
 
-def on_triangles(count: int, seed: int, spread: float = 1.5) -> SizeField:
+def on_triangles(count: int, seed: int, spread: float = 1.5, grading: int = 4) -> SizeField:
     """Return random sizes on a Delaunay triangulation that is much finer near one point."""
     rng = np.random.default_rng(seed)
-    radius, angle = 0.5 * rng.random(count) ** 4, 2 * np.pi * rng.random(count)
+    radius, angle = 0.5 * rng.random(count) ** grading, 2 * np.pi * rng.random(count)
     points = np.column_stack([0.5 + radius * np.cos(angle), 0.5 + radius * np.sin(angle)])
     points = np.vstack([points, [[0, 0], [1, 0], [1, 1], [0, 1]]])
     sizes = 0.1 * np.exp(spread * rng.standard_normal(len(points)))
@@ -49,10 +49,10 @@ def on_triangles(count: int, seed: int, spread: float = 1.5) -> SizeField:
 
 
 def frame(count: int = 9) -> SizeField:
-    """Return a field on a square with a square hole: cells of a grid, the middle ninth left out."""
+    """Return a field on a square with a square hole: cells of a grid, the middle sixteenth left out."""
     whole = BackgroundMesh.unit_square_grid(count, count)
     centre = whole.points[whole.triangles].mean(axis=1)
-    keep = (np.abs(centre - 0.5) > 1 / 6).any(axis=1)
+    keep = (np.abs(centre - 0.5) > 1 / 8).any(axis=1)
     sizes = 0.05 + 0.1 * whole.points[:, 0]
     return SizeField(BackgroundMesh(whole.points, whole.triangles[keep]), sizes, "frame")
 
