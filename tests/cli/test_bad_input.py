@@ -37,7 +37,7 @@ def with_value(value: float) -> np.ndarray:
 
 
 FIELDS = {
-    "missing": (lambda path: None, "no such file"),
+    "missing": (lambda path: None, "no such"),
     "corrupt": (raw(b"\x93NUMPY\x01\x00junk"), "f.npy"),
     "empty file": (raw(b""), "empty"),
     "empty array": (array(np.empty((0, 0))), "f.npy"),
@@ -152,9 +152,9 @@ def test_the_output_is_tried_before_the_work(
 
 
 MESHES = {
-    "missing": (lambda path: None, "no such file"),
+    "missing": (lambda path: None, "no such"),
     "empty": (raw(b""), "empty"),
-    "corrupt": (raw(b"<VTKFile"), "corrupt"),
+    "corrupt": (raw(b"<VTKFile"), "not well-formed"),
     "other XML": (raw(b"<html></html>"), "m.vtu"),
 }
 
