@@ -48,6 +48,10 @@ MISSED = 3.0
 """A mesh whose largest R exceeds this has missed a valley, however fast it was."""
 
 
+COUNTS = ("quads", "triangles")
+"""Numbers that are whole."""
+
+
 @dataclass
 class Contender:
     """One program on one case.
