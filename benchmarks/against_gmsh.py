@@ -141,12 +141,9 @@ def print_case(name: str, contenders: list[Contender], share: float | None) -> N
     print("| | s, median | s, best | slower than sizeviz | " + " | ".join(keys) + " |")
     print("|---|" + "---|" * (len(keys) + 3))
     for one in contenders:
-        cells = [
-            f"{value:,.0f}" if key in ("quads", "triangles") else f"{value:.4g}" for key, value in one.numbers.items()
-        ]
-        print(
-            f"| {one.name} | {one.median:.2f} | {min(one.seconds):.2f} | {one.median / first:.1f} × | {' | '.join(cells)} |"
-        )
+        cells = [f"{value:,.0f}" if key in COUNTS else f"{value:.4g}" for key, value in one.numbers.items()]
+        times = f"{one.median:.2f} | {min(one.seconds):.2f} | {one.median / first:.1f} ×"
+        print(f"| {one.name} | {times} | {' | '.join(cells)} |")
     if share is not None:
         print(f"\nOf Gmsh's time by its first route, {100 * share:.0f} % is looking up the field in the view.")
     for one in contenders:
