@@ -5,6 +5,8 @@ Amenta, Choi, Rote (2003), "Incremental constructions con BRIO", DOI 10.1145/777
 
 A triangle t has corners ``corner[3t + i]``; ``twin[3t + i]`` is the same edge seen from the other side, the edge
 that lies opposite corner i. Outside the hull lie ghost triangles, whose one ghost corner has the index ``len(x)``.
+
+``_nrt=False``: a kernel that makes no array need not count references, which costs more than some of its calls.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from sizeviz.geometry._predicates_kernels import incircle, orient2d
 N_TRIANGLES, LAST, STATE_SIZE = 0, 1, 2
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _hilbert(ix, iy, bits):
     """Return the position of a cell along the Hilbert curve of a 2^bits x 2^bits grid."""
     key = np.uint64(0)
@@ -34,7 +36,7 @@ def _hilbert(ix, iy, bits):
     return key
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _scrambled(i):
     """Return a 64-bit hash of an index (splitmix64): the same order in every run."""
     z = np.uint64(i) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(0x9E3779B97F4A7C15)
@@ -43,7 +45,7 @@ def _scrambled(i):
     return z ^ (z >> np.uint64(31))
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def hilbert_keys(points, low, scale, bits, shift):
     """Return the place of each point along a Hilbert curve over the box, shifted left, with the index below it."""
     n = len(points)
@@ -56,7 +58,7 @@ def hilbert_keys(points, low, scale, bits, shift):
     return keys
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def with_rounds(keys, shift, rounds):
     """Put a random round above each key: the last holds half of the points, the one before a quarter, and so on."""
     for i in range(len(keys)):
@@ -68,7 +70,7 @@ def with_rounds(keys, shift, rounds):
         keys[i] |= np.uint64(rounds - 1 - back) << np.uint64(shift)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def first_triangle(x, y):
     """Return three points that are not collinear, counter-clockwise, the first of them 0; or -1s if there are none."""
     n = len(x)
@@ -84,13 +86,13 @@ def first_triangle(x, y):
     return -1, -1, -1
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _pair(twin, e, f):
     twin[e] = f
     twin[f] = e
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def begin(a, b, c, ghost, corner, twin, state):
     """Set up the triangle abc and the three ghosts around it."""
     vertices = (a, b, c)
@@ -104,7 +106,7 @@ def begin(a, b, c, ghost, corner, twin, state):
     state[N_TRIANGLES], state[LAST] = 4, 0
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _beyond(ax, ay, bx, by, px, py):
     """Whether p conflicts with the ghost outside the hull edge from a to b: left of it, or on it between a and b."""
     side = orient2d(ax, ay, bx, by, px, py)
@@ -115,7 +117,7 @@ def _beyond(ax, ay, bx, by, px, py):
     return (ay < py) != (by < py) and py != ay and py != by
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _conflicts(t, px, py, x, y, corner):
     """Whether p lies strictly inside the circumcircle of triangle t."""
     ghost = len(x)
@@ -129,7 +131,7 @@ def _conflicts(t, px, py, x, y, corner):
     return incircle(x[a], y[a], x[b], y[b], x[c], y[c], px, py) > 0.0
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def located(t, px, py, x, y, corner, twin):
     """Walk from triangle t to one that holds p, or to a ghost beyond whose hull edge p lies."""
     ghost = len(x)
@@ -156,7 +158,7 @@ def located(t, px, py, x, y, corner, twin):
             return t
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _duplicate(t, px, py, x, y, corner):
     """Return the corner of t that coincides with p, or -1."""
     for i in range(3):
@@ -166,7 +168,7 @@ def _duplicate(t, px, py, x, y, corner):
     return -1
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _cavity(t, px, py, x, y, corner, twin, stack, removed, rim):
     """List the triangles whose circle holds p, and the edges around them, counter-clockwise, as seen from outside.
 
@@ -192,7 +194,7 @@ def _cavity(t, px, py, x, y, corner, twin, stack, removed, rim):
     return n_removed, n_rim
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _star(p, n_removed, n_rim, corner, twin, removed, rim, state):
     """Join p to every edge of the cavity's rim, reusing the removed triangles' places."""
     before = -1
@@ -220,7 +222,7 @@ def _star(p, n_removed, n_rim, corner, twin, removed, rim, state):
     state[LAST] = first
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def insert(start, stop, x, y, corner, twin, state, same_as, stack, removed, rim):
     """Insert points start..stop; one that coincides with an earlier one is left out and named in ``same_as``.
 
@@ -240,7 +242,7 @@ def insert(start, stop, x, y, corner, twin, state, same_as, stack, removed, rim)
         _star(p, n_removed, n_rim, corner, twin, removed, rim, state)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def real(n_triangles, ghost, corner):
     """Return which triangles have no ghost corner."""
     keep = np.empty(n_triangles, dtype=np.bool_)
@@ -249,7 +251,7 @@ def real(n_triangles, ghost, corner):
     return keep
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def _ranked(keep, corner, index):
     """Return each kept triangle's place when sorted by its lowest point, -1 for the others, and their number."""
     start = np.zeros(len(index) + 1, dtype=np.int32)
@@ -269,7 +271,7 @@ def _ranked(keep, corner, index):
     return place, start[len(index)]
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def collected(keep, corner, twin, locked, index):
     """Return the kept triangles by the points' own numbers, their neighbours (-1: none), their locked edges.
 

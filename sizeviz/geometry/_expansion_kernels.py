@@ -3,6 +3,8 @@
 Shewchuk (1997), "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
 Discrete & Computational Geometry 18, DOI 10.1007/PL00009321. Components run from the smallest to the largest.
 Exact as long as no product over- or underflows (magnitudes between about 1e-70 and 1e70 for the incircle test).
+
+``_nrt=False``: a kernel that makes no array need not count references, which costs more than some of its calls.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from numba import njit
 _SPLITTER = 134217729.0  # 2**27 + 1
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def two_sum(a, b):
     """Return x, y with x + y = a + b exactly, x the rounded sum."""
     x = a + b
@@ -21,7 +23,7 @@ def two_sum(a, b):
     return x, (a - (x - bv)) + (b - bv)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def two_diff(a, b):
     """Return x, y with x + y = a - b exactly, x the rounded difference."""
     x = a - b
@@ -29,7 +31,7 @@ def two_diff(a, b):
     return x, (a - (x + bv)) + (bv - b)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def split(a):
     """Return the high and the low half of a double, 26 bits each."""
     c = _SPLITTER * a
@@ -37,7 +39,7 @@ def split(a):
     return high, a - high
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def two_product(a, b):
     """Return x, y with x + y = a * b exactly, x the rounded product."""
     x = a * b
@@ -46,7 +48,7 @@ def two_product(a, b):
     return x, al * bl - (((x - ah * bh) - al * bh) - ah * bl)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def sign_of_sum(terms, count):
     """Return a number with the exact sign of the sum of the first ``count`` terms; ``terms`` is overwritten."""
     for i in range(1, count):
@@ -60,7 +62,7 @@ def sign_of_sum(terms, count):
     return 0.0
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def expansion_sum(e, ne, f, nf, out):
     """Write the sum of two expansions, without zeros, and return its length (FAST-EXPANSION-SUM)."""
     i = j = n = 0
@@ -79,7 +81,7 @@ def expansion_sum(e, ne, f, nf, out):
     return n
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def scaled_expansion(e, ne, b, out):
     """Write an expansion times a double, without zeros, and return its length (SCALE-EXPANSION)."""
     n = 0
@@ -105,7 +107,7 @@ def scaled_expansion(e, ne, b, out):
     return n
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def expansion_product(e, f):
     """Return the product of two expansions, without zeros."""
     size = 2 * len(e) * len(f) + 1
@@ -118,14 +120,14 @@ def expansion_product(e, f):
     return total[:n]
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def added(e, f):
     """Return the sum of two expansions, without zeros."""
     out = np.empty(len(e) + len(f) + 1)
     return out[: expansion_sum(e, len(e), f, len(f), out)]
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def difference(a, b):
     """Return a - b as an expansion of at most two components."""
     high, low = two_diff(a, b)

@@ -2,6 +2,8 @@
 
 A rounded determinant with a proved error bound answers nearly every call; the rest are answered exactly.
 Shewchuk (1997), DOI 10.1007/PL00009321.
+
+``_nrt=False``: a kernel that makes no array need not count references, which costs more than some of its calls.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ _ORIENT_BOUND = (3.0 + 16.0 * _EPS) * _EPS
 _INCIRCLE_BOUND = (10.0 + 96.0 * _EPS) * _EPS
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def orient2d(ax, ay, bx, by, cx, cy):
     """Return a number above 0 where a, b, c turn left, below 0 where they turn right, 0 where collinear: exact."""
     left = (ax - cx) * (by - cy)
@@ -36,7 +38,7 @@ def orient2d(ax, ay, bx, by, cx, cy):
     return _orient2d_exact(ax, ay, bx, by, cx, cy)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def _orient2d_exact(ax, ay, bx, by, cx, cy):
     terms = np.empty(12)
     terms[0], terms[1] = two_product(ax, by)
@@ -48,7 +50,7 @@ def _orient2d_exact(ax, ay, bx, by, cx, cy):
     return sign_of_sum(terms, 12)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def incircle(ax, ay, bx, by, cx, cy, dx, dy):
     """Return a number above 0 where d lies inside the circle through a, b, c (turning left), 0 where on it: exact."""
     adx, ady = ax - dx, ay - dy
@@ -68,7 +70,7 @@ def incircle(ax, ay, bx, by, cx, cy, dx, dy):
     return _incircle_short(ax, ay, bx, by, cx, cy, dx, dy)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _short_minor(px, py, qx, qy):
     """Return p x q, and the sum of the moduli of all that was rounded away."""
     left, e = two_product(px, qy)
@@ -77,7 +79,7 @@ def _short_minor(px, py, qx, qy):
     return minor, abs(e) + abs(f) + abs(g)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _short_lift(px, py):
     """Return |p|^2, and the sum of the moduli of all that was rounded away."""
     xx, e = two_product(px, px)
@@ -86,7 +88,7 @@ def _short_lift(px, py):
     return lift, abs(e) + abs(f) + abs(g)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def _incircle_short(ax, ay, bx, by, cx, cy, dx, dy):
     """Decide points of few significant bits, such as those of a lattice, without any allocation of expansions."""
     adx, lost0 = two_diff(ax, dx)
@@ -116,7 +118,7 @@ def _incircle_short(ax, ay, bx, by, cx, cy, dx, dy):
     return sign_of_sum(terms, 6)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def _exact_term(px, py, qx, qy, rx, ry):
     """Return |p|^2 (q x r) as an expansion."""
     minor = added(expansion_product(qx, ry), expansion_product(-rx, qy))
@@ -124,7 +126,7 @@ def _exact_term(px, py, qx, qy, rx, ry):
     return expansion_product(lift, minor)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def _incircle_exact(ax, ay, bx, by, cx, cy, dx, dy):
     adx, ady = difference(ax, dx), difference(ay, dy)
     bdx, bdy = difference(bx, dx), difference(by, dy)
@@ -134,7 +136,7 @@ def _incircle_exact(ax, ay, bx, by, cx, cy, dx, dy):
     return total[-1] if len(total) else 0.0
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def orientations(a, b, c):
     """Return the sign of orient2d for each row."""
     out = np.empty(len(a), dtype=np.int8)
@@ -143,7 +145,7 @@ def orientations(a, b, c):
     return out
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def circle_sides(a, b, c, d):
     """Return the sign of incircle for each row."""
     out = np.empty(len(a), dtype=np.int8)

@@ -17,18 +17,18 @@ CELLS = BLOCK * BLOCK
 EMPTY = np.uint64(0xFFFFFFFFFFFFFFFF)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def level_of(h):
     """Return k with 2^k <= h < 2^(k + 1)."""
     return math.frexp(h)[1] - 1
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _key(level, bx, by):
     return (np.uint64(level & 0xFF) << np.uint64(56)) | (np.uint64(by) << np.uint64(28)) | np.uint64(bx)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _slot(key, keys):
     """Return where a key is in the table, or the empty place where it would go."""
     mask = np.uint64(len(keys) - 1)
@@ -39,14 +39,14 @@ def _slot(key, keys):
     return i
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def block_at(level, bx, by, keys, values):
     """Return the number of a block, -1 where there is none."""
     i = _slot(_key(level, bx, by), keys)
     return values[i] if keys[i] != EMPTY else -1
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def cell_for(level, ix, iy, keys, values, cells, n_blocks):
     """Return a cell's place in ``cells`` and the number of blocks, making its block if it is new."""
     key = _key(level, ix >> BLOCK_BITS, iy >> BLOCK_BITS)
@@ -59,7 +59,7 @@ def cell_for(level, ix, iy, keys, values, cells, n_blocks):
     return values[i] * CELLS + ((iy & (BLOCK - 1)) << BLOCK_BITS) + (ix & (BLOCK - 1)), n_blocks
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def rehashed(keys, values, size):
     """Return the table copied into one of ``size`` places, a power of two."""
     new_keys = np.full(size, EMPTY, dtype=np.uint64)

@@ -12,7 +12,7 @@ from numba import njit
 BASE, PARENT, OUTER, MARK, WORK_COLUMNS = 0, 1, 2, 3, 4
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _touch(t, work, touched, n):
     """Enter a triangle into the search unless it is in it."""
     if work[t, BASE] < 0:
@@ -22,7 +22,7 @@ def _touch(t, work, touched, n):
     return n
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _common_base(a, b, mate, work, mark):
     """Return where the alternating paths from two outer triangles to the root meet."""
     while True:
@@ -38,7 +38,7 @@ def _common_base(a, b, mate, work, mark):
         b = work[mate[b], PARENT]
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _flag_path(v, base, child, mate, work, flag):
     """Flag the bases on the path from v down to the blossom's base, and let its triangles be reached both ways."""
     while work[v, BASE] != base:
@@ -49,7 +49,7 @@ def _flag_path(v, base, child, mate, work, flag):
         v = work[mate[v], PARENT]
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _contract(t, u, mate, work, touched, n_touched, queue, tail, mark):
     """Shrink the blossom that the edge from t to u closes; its inner triangles become outer ones."""
     base = _common_base(t, u, mate, work, mark)
@@ -67,7 +67,7 @@ def _contract(t, u, mate, work, touched, n_touched, queue, tail, mark):
     return tail
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _search(root, most, twin, mate, work, touched, queue):
     """Return a free triangle that an alternating path joins to the root, or -1, and how many were touched."""
     n_touched = _touch(root, work, touched, 0)
@@ -98,7 +98,7 @@ def _search(root, most, twin, mate, work, touched, queue):
     return -1, n_touched
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def augment(start, stop, free, most, twin, mate, work, touched, queue):
     """Join free triangles ``free[start:stop]`` along alternating paths of at most ``most`` touched triangles.
 
@@ -119,7 +119,7 @@ def augment(start, stop, free, most, twin, mate, work, touched, queue):
             work[touched[i], OUTER] = work[touched[i], MARK] = 0
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _flip_up(t, mate, parent):
     """Exchange joined and open edges on the path from an outer triangle up to its root, which leaves t free."""
     above = mate[t]
@@ -130,7 +130,7 @@ def _flip_up(t, mate, parent):
         above = onward
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def forest(twin, mate, root, parent, dead, queue):
     """Grow alternating trees from all free triangles and join those whose trees meet; return how many pairs.
 

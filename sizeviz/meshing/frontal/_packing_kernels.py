@@ -3,6 +3,8 @@
 Accepted points propose neighbours along their frame's axes; a proposal waits in a queue by size and is refused if an
 accepted point lies nearer than ``CLOSE`` of their mean size, in the maximum norm of the frame. After Remacle et al.
 (2013), "A frontal Delaunay quad mesh generator using the L-infinity norm", DOI 10.1002/nme.4458.
+
+``_nrt=False``: a kernel that makes no array need not count references, which costs more than some of its calls.
 """
 
 from __future__ import annotations
@@ -27,13 +29,13 @@ N_POINTS, N_BLOCKS, BUCKET, N_QUEUED, FREE, STATE_SIZE = 0, 1, 2, 3, 4, 5
 SCALE, LOW_X, LOW_Y, ANGLE, RATIO, LOG_FINEST = 0, 1, 2, 3, 4, 5
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def bucket_of(h, log_finest):
     """Return the bucket of a size: ``PER_OCTAVE`` to a factor of two, the smallest size in bucket 1."""
     return min(max(int((math.log2(h) - log_finest) * PER_OCTAVE) + 1, 0), N_BUCKETS - 1)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _near_in_block(first, ix0, ix1, iy0, iy1, x, y, h, c, s, layer, cells, points, chain, layers):
     """Whether a point in a range of one block's cells is too near."""
     for iy in range(iy0, iy1 + 1):
@@ -49,7 +51,7 @@ def _near_in_block(first, ix0, ix1, iy0, iy1, x, y, h, c, s, layer, cells, point
     return False
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def blocked(x, y, h, c, s, layer, setting, table, packing):
     """Whether an accepted point lies too near to a proposal of size h whose frame has the cosine c and sine s."""
     keys, values, cells = table
@@ -76,7 +78,7 @@ def blocked(x, y, h, c, s, layer, setting, table, packing):
     return False
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def accept(x, y, h, turn, layer, state, setting, table, packing):
     """Add a point to the packing and to the hash; return its number."""
     keys, values, cells = table
@@ -94,7 +96,7 @@ def accept(x, y, h, turn, layer, state, setting, table, packing):
     return p
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _enqueue(x, y, h, turn, layer, hint, home, state, log_finest, waiting):
     """Put a proposal at the end of its bucket."""
     queue, links, heads, tails = waiting
@@ -116,7 +118,7 @@ def _enqueue(x, y, h, turn, layer, hint, home, state, log_finest, waiting):
         state[BUCKET] = b
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def propose(p, hint, home, layer, sampler, region, state, setting, packing, waiting):
     """Propose the four neighbours of an accepted point, at the mean size of both ends."""
     points = packing[0]
@@ -136,7 +138,7 @@ def propose(p, hint, home, layer, sampler, region, state, setting, packing, wait
         c, s = -s, c
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def begin(rim, sizes, turns, sampler, region, state, setting, table, packing, waiting):
     """Accept the nodes of the outline, then let each propose its neighbours."""
     state[BUCKET] = N_BUCKETS
@@ -149,7 +151,7 @@ def begin(rim, sizes, turns, sampler, region, state, setting, table, packing, wa
     state[BUCKET] = 0
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _next(state, waiting, seeds):
     """Move to the first bucket that is not empty; return its first proposal, or -2 - (a seed), or -1 at the end."""
     links, heads = waiting[1], waiting[2]
@@ -170,7 +172,7 @@ def _next(state, waiting, seeds):
     return -1
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def advance(most, sampler, region, state, setting, table, packing, waiting, seeds):
     """Accept up to ``most`` more points; return whether nothing is left to try."""
     queue, links = waiting[0], waiting[1]

@@ -3,6 +3,8 @@
 ``twin[3t + i]`` is the place of the edge opposite corner i of triangle t as its neighbour counts it, -1 where the two
 may not be joined. Min-sum belief propagation for matchings: Bayati, Shah, Sharma (2008), "Max-product for maximum
 weight matching", DOI 10.1109/TIT.2007.915695.
+
+``_nrt=False``: a kernel that makes no array need not count references, which costs more than some of its calls.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ FORBIDDEN = 20.0
 DAMPING = 0.5
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _corner_term(ux, uy, vx, vy):
     """Return (|u|^2 + |v|^2) / (u x v), infinite where the corner is flat or inverted."""
     det = ux * vy - uy * vx
@@ -25,7 +27,7 @@ def _corner_term(ux, uy, vx, vy):
     return (ux * ux + uy * uy + vx * vx + vy * vy) / det
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def quad_quality(ax, ay, bx, by, cx, cy, dx, dy):
     """Return the harmonic mean over the corners of 2 det / (sum of squares), 0 where one is flat or inverted."""
     total = _corner_term(bx - ax, by - ay, dx - ax, dy - ay)
@@ -35,7 +37,7 @@ def quad_quality(ax, ay, bx, by, cx, cy, dx, dy):
     return 8.0 / total
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def joinable(neighbours, locked):
     """Return the twin of each edge across which two triangles may be joined, -1 for the others."""
     n = len(neighbours)
@@ -51,13 +53,13 @@ def joinable(neighbours, locked):
     return twin
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _ripple(k):
     """Return a tiny number that breaks ties, the same in every run."""
     return ((k * 2654435761) & 0xFFFF0000) * (1e-4 / 2.0**32)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def pair_costs(start, stop, points, triangles, twin, cost):
     """Fill the cost of joining across each edge whose first triangle is in a range; both its sides are filled."""
     for t in range(start, stop):
@@ -77,7 +79,7 @@ def pair_costs(start, stop, points, triangles, twin, cost):
                 cost[g] = cost[e]
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _send(t, twin, cost, inbox, share):
     """Send the messages of one triangle: the cost across each edge less the best it could do elsewhere."""
     e = 3 * t
@@ -93,7 +95,7 @@ def _send(t, twin, cost, inbox, share):
         inbox[g] += share * (cost[e + 2] - min(m0, m1) - inbox[g])
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def sweep(forwards, twin, cost, inbox):
     """Let every triangle send its messages, in order or in reverse."""
     n = len(twin) // 3
@@ -106,7 +108,7 @@ def sweep(forwards, twin, cost, inbox):
             _send(t, twin, cost, inbox, share)
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _favourite(t, twin, score, mate):
     """Return the edge across which a triangle would best join one that is free, or -1."""
     best, least = -1, np.inf
@@ -117,7 +119,7 @@ def _favourite(t, twin, score, mate):
     return best
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def joined_by_belief(twin, cost, inbox, mate):
     """Join triangles that prefer each other, until no two free ones are neighbours."""
     n = len(mate)
@@ -142,7 +144,7 @@ def joined_by_belief(twin, cost, inbox, mate):
         n_active = kept
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def quads_of(triangles, twin, mate):
     """Return the quadrilaterals of a perfect matching, counter-clockwise."""
     quads = np.empty((len(mate) // 2, 4), dtype=np.int32)

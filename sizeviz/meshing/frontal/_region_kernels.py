@@ -8,7 +8,7 @@ from numba import njit
 from sizeviz.geometry._predicates_kernels import orient2d
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def within(region, x, y, gap, hint):
     """Return whether a point lies inside, at least ``gap`` from the nearest edge, and a hint for the next point nearby.
 
@@ -25,7 +25,7 @@ def within(region, x, y, gap, hint):
     return region[4][t] and _clear(region[1], triangles, region[5], t, x, y, gap), t
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _clear(points, triangles, locked, t, x, y, gap):
     """Whether a point in triangle t is at least ``gap`` from those of its edges that are locked."""
     for i in range(3):
@@ -37,7 +37,7 @@ def _clear(points, triangles, locked, t, x, y, gap):
     return True
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def _triangle_at(points, triangles, neighbours, x, y, start):
     """Walk to the triangle that holds a point; -1 where none does.
 
@@ -63,7 +63,7 @@ def _triangle_at(points, triangles, neighbours, x, y, start):
         t = onward
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def parity(neighbours, locked):
     """Return which triangles an odd number of locked edges separates from the outside of the hull."""
     n = len(neighbours)

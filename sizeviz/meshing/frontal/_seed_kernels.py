@@ -14,7 +14,7 @@ HIDDEN = 0.7
 STACK = 256
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def leaves(most, sampler, region, scale, slope, stack, depth, out, hints):
     """Split cells from the stack until ``most`` leaves with their centre inside the domain are in ``out``.
 
@@ -50,7 +50,7 @@ def leaves(most, sampler, region, scale, slope, stack, depth, out, hints):
     return depth, count, asked
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=True)
 def by_bucket(seeds, log_finest):
     """Return the seeds sorted by bucket, in the order of the quadtree within each, and where each bucket begins."""
     start = np.zeros(N_BUCKETS + 1, dtype=np.int64)
@@ -67,7 +67,7 @@ def by_bucket(seeds, log_finest):
     return out, start
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, _nrt=False)
 def largest_slope(points, triangles, sizes):
     """Return the largest gradient of a piecewise-linear field."""
     steepest = 0.0
