@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 
 
@@ -9,6 +10,8 @@ def main() -> None:
     """Run the command line and leave with its exit code."""
     from sizeviz.cli import run_command_line
 
+    # Ended by another program is like Ctrl-C: what is half-written goes.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(run_command_line(sys.argv[1:]))
 
 
