@@ -328,7 +328,7 @@ class Controller(QObject):
             self.store.amend(result)
             missing = self.missing()
             if missing:
-                self._later(lambda: self._run_next(missing[0]) if self.study is result else None)
+                self._run_next(missing[0])
             else:
                 self.settled.emit()
 

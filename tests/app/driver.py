@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from typing import TYPE_CHECKING
 
@@ -66,7 +67,7 @@ class Person:
 
     def wait_settled(self, seconds: float = 300.0) -> None:
         controller = self.window.controller
-        self.wait(lambda: not controller.jobs.is_busy and controller.study is not None, seconds)
+        self.wait(lambda: not controller.jobs.is_busy and controller.study and not controller.missing(), seconds)
         self.rest(30)
 
     def spot(self, pane: Pane, x: float, y: float) -> QPoint:
@@ -86,7 +87,7 @@ class Person:
         glass = pane.surface.glass
         spots = [self.spot(pane, x, y) for x, y in path]
         QTest.mousePress(glass, LEFT, pos=spots[0])
-        for start, end in zip(spots[:-1], spots[1:], strict=True):
+        for start, end in itertools.pairwise(spots):
             for k in range(1, steps + 1):
                 QTest.mouseMove(glass, start + (end - start) * k / steps)
                 QTest.qWait(1)
