@@ -23,6 +23,16 @@ def sweep_blocks(first, last, blocks, size, patch, inv, bound, law, rails, gain)
         gain[b] = total
 
 
+@allocating
+def sweep_nodes(nodes, patch, inv, bound, law, rails):
+    """Move the nodes of a list once, in order; return the objective's decrease."""
+    star = np.empty((patch[2].shape[1], STAR_COLUMNS))
+    total = 0.0
+    for i in range(len(nodes)):
+        total += node_step(nodes[i], patch, inv, bound, law, rails, star)
+    return total
+
+
 @compiled
 def centre_sizes(first, last, xy, quads, sampler, hint, sizes):
     """Write the field's size at the centre of each element of a range; dead elements keep theirs."""

@@ -158,6 +158,11 @@ class Workspace:
             first, last, blocks, BLOCK, self.patch, self.inv, self.bound, law, self.rails, self.gain,
         )  # fmt: skip
 
+    def sweep_some(self, nodes: NDArray[np.integer]) -> float:
+        """Move the nodes of a list once; return the objective's decrease."""
+        law = (self.objective, self.weight)
+        return float(_sweep_kernels.sweep_nodes(nodes, self.patch, self.inv, self.bound, law, self.rails))
+
     def lift(self, floor: float) -> int:
         """Move the nodes of elements whose quality is below ``floor``; return how many remain below."""
         self.aim()

@@ -120,3 +120,10 @@ def lift_worst(floor, limit, passes, patch, inv, bound, rails):
         if left == 0:
             break
     return left
+
+
+@compiled
+def qualities(rows, xy, quads, out):
+    """Write the shape quality of some elements to their places in ``out``."""
+    for i in range(len(rows)):
+        out[rows[i]] = quad_quality(rows[i], xy, quads)

@@ -44,16 +44,17 @@ def improved(
     Cancelled
         If the monitor says so.
     """
-    options = options or SmoothOptions()
+    return improve(mesh, domain, size, options or SmoothOptions(), monitor).result()
+
+
+def improve(mesh: QuadMesh, domain: Domain, size: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
+    """Do what ``improved`` does and return the workspace, for those who go on from there."""
     work = Workspace(mesh, domain, size, options)
-    if not options.cleanup:
-        work.sweep(options.sweeps, monitor)
-        work.lift(options.floor)
-        return work.moved(mesh)
-    work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
-    clean_fast(work, SubMonitor(monitor, 0.05, 0.2))
-    work.sweep(4, SubMonitor(monitor, 0.2, 0.3))
-    clean_wide(work, options.rounds, SubMonitor(monitor, 0.3, 0.85))
+    if options.cleanup:
+        work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
+        clean_fast(work, SubMonitor(monitor, 0.05, 0.2))
+        work.sweep(4, SubMonitor(monitor, 0.2, 0.3))
+        clean_wide(work, options.rounds, SubMonitor(monitor, 0.3, 0.85))
     work.sweep(options.sweeps, SubMonitor(monitor, 0.85, 1.0))
     work.lift(options.floor)
-    return work.result()
+    return work

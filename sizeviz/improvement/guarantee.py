@@ -1,0 +1,191 @@
+"""The guarantee: R <= 1 by the longest edge on every element, or a report of what is left and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sizeviz.errors import InputError
+from sizeviz.improvement._conform import Judge
+from sizeviz.improvement._workspace import STUCK, Workspace
+from sizeviz.improvement.chain import improve
+from sizeviz.improvement.options import SmoothOptions
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sizeviz.geometry.domain import Domain
+    from sizeviz.geometry.quadmesh import QuadMesh
+    from sizeviz.sizing import SizeField
+    from sizeviz.sizing.analytic import SizeFunction
+
+SLACK = 0.97
+"""Edges are held below this share of the smallest size, so that the last of them end below all of it."""
+WEIGHT = 100.0
+"""Weight of the edge term over the whole mesh."""
+AWARE_SWEEPS = 12
+LARGEST_WEIGHT = 1e6
+
+
+@dataclass(frozen=True, kw_only=True)
+class GuaranteeOptions:
+    """How hard the guarantee is pursued.
+
+    Parameters
+    ----------
+    smooth : SmoothOptions
+        The clean-up and smoothing before it.
+    rounds : int
+        Rounds of local repair, 0 or more. Default 10.
+    polish : int
+        Guarded sweeps over the whole mesh at the end, 0 or more. Default 4.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    smooth: SmoothOptions = field(default_factory=SmoothOptions)
+    rounds: int = 10
+    polish: int = 4
+
+    def __post_init__(self) -> None:
+        for name, value in (("rounds", self.rounds), ("polish", self.polish)):
+            if not (isinstance(value, int) and value >= 0):
+                raise InputError(f"{name} is {value}; it must be a whole number, 0 or more")
+
+
+@dataclass(frozen=True, eq=False)
+class GuaranteeReport:
+    """What the guarantee reached.
+
+    Parameters
+    ----------
+    n_quads : int
+        Elements of the mesh.
+    elements : (K,) int64
+        Elements whose R is still above 1; empty where the guarantee holds.
+    ratios : (K,) float64
+        Their R by the longest edge.
+    reasons : tuple of str
+        Why each of them is left.
+    """
+
+    n_quads: int
+    elements: NDArray[np.int64]
+    ratios: NDArray[np.float64]
+    reasons: tuple[str, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every element is correct."""
+        return len(self.elements) == 0
+
+    @property
+    def verdict(self) -> str:
+        """The outcome in one sentence."""
+        if self.holds:
+            return f"R <= 1 on all {self.n_quads} elements"
+        return (
+            f"R > 1 on {len(self.elements)} of {self.n_quads} elements, at most {self.ratios.max():.3f}: "
+            + "; ".join(f"{self.reasons.count(reason)} {reason}" for reason in sorted(set(self.reasons)))
+        )
+
+
+def guaranteed(
+    mesh: QuadMesh,
+    domain: Domain,
+    tight: SizeField,
+    reference: SizeFunction,
+    options: GuaranteeOptions | None = None,
+    monitor: Monitor = SILENT,
+) -> tuple[QuadMesh, GuaranteeReport]:
+    """Return a mesh whose elements are all correct by the longest edge, and a report where one is not.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+        A raw mesh generated for ``tight`` at its own sizes (mesh scale 1).
+    domain : Domain
+        The domain it was made for.
+    tight : SizeField
+        The tight field, ``tightened``.
+    reference : SizeFunction
+        The user's field.
+    options : GuaranteeOptions, optional
+        How hard to try.
+    monitor : Monitor
+        Told of progress.
+
+    Raises
+    ------
+    InputError
+        If the mesh is empty or does not belong to the domain.
+    Cancelled
+        If the monitor says so.
+    """
+    options = options or GuaranteeOptions()
+    work = improve(mesh, domain, tight, options.smooth, SubMonitor(monitor, 0.0, 0.6))
+    judge = Judge(work, reference)
+    _aware(work, judge, SubMonitor(monitor, 0.6, 0.75))
+    _repair(work, judge, options.rounds, SubMonitor(monitor, 0.75, 0.9))
+    _polish(work, judge, options, SubMonitor(monitor, 0.9, 1.0))
+    return work.result(), _report(work, judge)
+
+
+def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
+    """Smooth with the edges held below the smallest size, which is looked up again after every sweep."""
+    work.weight = WEIGHT
+    everywhere = np.arange(len(work.quads))
+    for n in range(AWARE_SWEEPS):
+        judge.limit(everywhere, SLACK)
+        work.sweep(1, SubMonitor(monitor, n / AWARE_SWEEPS, (n + 1) / AWARE_SWEEPS), "holding edges below the sizes")
+        judge.look(everywhere)
+
+
+def _repair(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> None:
+    """Smooth two rings around wrong elements with a growing weight."""
+    work.weight = 2.0 * WEIGHT
+    for n in range(rounds):
+        wrong = judge.wrong
+        monitor.step(n / rounds, f"repairing {len(wrong)} elements")
+        if not len(wrong):
+            break
+        nodes = judge.rings(wrong, 2)
+        rows = judge.touched(nodes)
+        for _ in range(AWARE_SWEEPS):
+            judge.limit(rows, SLACK)
+            settled = work.sweep_some(nodes) < 1e-3
+            judge.look(rows)
+            if settled:
+                break
+        work.weight = min(3.0 * work.weight, LARGEST_WEIGHT)
+    monitor.step(1.0)
+
+
+def _polish(work: Workspace, judge: Judge, options: GuaranteeOptions, monitor: Monitor) -> None:
+    """Smooth the whole mesh once more, and raise its worst elements, taking back what makes any element wrong."""
+    work.weight = WEIGHT
+    everywhere = np.arange(len(work.quads))
+    for n in range(options.polish):
+        monitor.step(n / (options.polish + 1), "polishing")
+        judge.limit(everywhere, 0.995)
+        judge.guarded(work.sweep, options.smooth.floor)
+    judge.guarded(lambda: work.lift(options.smooth.floor), options.smooth.floor)
+    monitor.step(1.0)
+
+
+def _report(work: Workspace, judge: Judge) -> GuaranteeReport:
+    wrong = judge.wrong
+    reasons = []
+    for q in wrong:
+        corner = work.quads[q]
+        edges = np.hypot(*(work.xy[np.roll(corner, -1)] - work.xy[corner]).T)
+        k = int(np.argmax(edges))
+        held = work.slide[corner[k]] == STUCK and work.slide[corner[(k + 1) % 4]] == STUCK
+        reasons.append("with an edge between two fixed nodes" if held else "that no move could shorten")
+    return GuaranteeReport(len(work.quads), wrong, judge.ratio[wrong], tuple(reasons))
