@@ -1,4 +1,4 @@
-"""``sizeviz compare``: gradient limiting beside size preserving, like with like."""
+"""``sizeviz compare``: gradient limiting beside size preserving, like with like, and the guarantee below them."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from sizeviz.cli.options import OutArgument, PipelineOptions, SourceArgument
 def compare(source: SourceArgument, /, *, out: OutArgument, options: PipelineOptions | None = None) -> None:
     """Mesh by gradient limiting and by size preserving, and judge both against the same field.
 
-    Writes mesh-gradient-limiting.vtu, mesh-size-preserving.vtu, compare.png and report.json, and prints the table.
-    Both methods share one mesh scale, and epsilon is 1 / alpha unless it is given.
+    Writes mesh-gradient-limiting.vtu, mesh-size-preserving.vtu, with the guarantee mesh-guaranteed.vtu, compare.png
+    and report.json, and prints the table. The two methods share one mesh scale, and epsilon is 1 / alpha unless it is
+    given; the guaranteed mesh may look at the field at every step and is a row of its own.
     """
     from sizeviz.cli.session import carried_out
-    from sizeviz.study import COMPARED
+    from sizeviz.study import COMPARED, GUARANTEED
 
-    carried_out(source, out, options or PipelineOptions(), COMPARED, comparison=True)
+    asked = options or PipelineOptions()
+    methods = COMPARED if asked.guarantee is False or not asked.smooth else (*COMPARED, GUARANTEED)
+    carried_out(source, out, asked, methods, comparison=True)

@@ -77,6 +77,9 @@ class PipelineOptions(FieldOptions):
         direct follows the field node by node; fast splits a mesh of twice the size.
     smooth
         Whether the mesh is cleaned up and smoothed.
+    guarantee
+        Whether every element is made correct by the longest edge. In run it replaces plain size preserving, in compare
+        it is a row of its own; on by default where there is something to guarantee.
     measure
         Size of an element in pictures and in the ratio array; the report has all three.
     seed
@@ -89,6 +92,7 @@ class PipelineOptions(FieldOptions):
     mesh_scale: float | None = None
     preset: Literal["direct", "fast"] = "direct"
     smooth: bool = True
+    guarantee: bool | None = None
     measure: MeasureName = "mean-edge"
     seed: int = 0
     max_elements: int = 5_000_000

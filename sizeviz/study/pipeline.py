@@ -1,7 +1,9 @@
 """The pipeline that every window, command, test and tutorial runs: field, mesh, smooth, judge.
 
 Plain mode is the paper's: the processed field alone drives mesher and smoother, one mesh scale serves every method,
-and nothing looks at the user's field before the judge does.
+and nothing looks at the user's field before the judge does. The guaranteed method may look at every step: it starts
+from h*, makes it finer where an element of that size could reach below the user's sizes, meshes that at its own sizes,
+and then moves and inserts nodes until R <= 1 by the longest edge.
 """
 
 from __future__ import annotations
@@ -12,28 +14,32 @@ from typing import TYPE_CHECKING
 
 from sizeviz.conformity import judged
 from sizeviz.errors import InputError
-from sizeviz.improvement import improved
+from sizeviz.improvement import GuaranteeOptions, guaranteed, improved, tightened
 from sizeviz.meshing import generated
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
-from sizeviz.sizing import ideal_count, limited, preserved
+from sizeviz.sizing import AnalyticSize, ideal_count, limited, preserved
 from sizeviz.study.study import STAGES, MethodRun, Study
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from sizeviz.sizing import SizeField
+    from sizeviz.sizing import SizeField, SizeFunction
     from sizeviz.study.options import StudyOptions
 
-METHODS: tuple[str, ...] = ("none", "gradient-limiting", "size-preserving")
-"""What can be done to a field before it is meshed, in the order of the paper."""
+METHODS: tuple[str, ...] = ("none", "gradient-limiting", "size-preserving", "guaranteed")
+"""What can be done with a field: meshed as it is, limited, preserved; or preserved with the guarantee."""
 
 COMPARED: tuple[str, ...] = ("gradient-limiting", "size-preserving")
 """The methods that the paper compares."""
+
+GUARANTEED = "guaranteed"
+"""The method whose elements are all correct by the longest edge."""
 
 METHOD_WORDS: dict[str, str] = {
     "none": "field as given",
     "gradient-limiting": "gradient limiting",
     "size-preserving": "size preserving",
+    "guaranteed": "guaranteed",
 }
 """The methods in words, for progress messages."""
 
@@ -86,7 +92,7 @@ def processed(study: Study, method: str, monitor: Monitor = SILENT) -> SizeField
     _check_method(method)
     options = study.options
     given = study.source.field
-    if method == "size-preserving":
+    if method in ("size-preserving", GUARANTEED):
         return preserved(given, options.preserve, threads=options.threads, monitor=monitor)
     asked = given if options.beta == 1.0 else given.with_sizes(options.beta * given.sizes)
     if method == "gradient-limiting":
@@ -120,15 +126,24 @@ def _field(study: Study, method: str, run: MethodRun, monitor: Monitor) -> Metho
 
 def _mesh(study: Study, method: str, run: MethodRun, monitor: Monitor) -> MethodRun:
     assert run.target is not None
-    options = _with_threads(study.options).mesh
-    return replace(run, raw=generated(study.source.domain, run.target, options, monitor))
+    options, domain = _with_threads(study.options).mesh, study.source.domain
+    if method != GUARANTEED:
+        return replace(run, raw=generated(domain, run.target, options, monitor))
+    tight = tightened(_asked(study), run.target)
+    # the tight field holds the sizes that are needed: a scale on top would only spoil what it was made for
+    return replace(run, tight=tight, raw=generated(domain, tight, replace(options, scale=1.0), monitor))
 
 
 def _smooth(study: Study, method: str, run: MethodRun, monitor: Monitor) -> MethodRun:
     assert run.target is not None and run.raw is not None
+    options = _with_threads(study.options).smooth
+    if method == GUARANTEED:
+        assert run.tight is not None
+        wanted = GuaranteeOptions(smooth=options)
+        mesh, reached = guaranteed(run.raw, study.source.domain, run.tight, _asked(study), wanted, monitor)
+        return replace(run, mesh=mesh, guarantee=reached)
     if not study.options.smoothing:
         return replace(run, mesh=run.raw)
-    options = _with_threads(study.options).smooth
     return replace(run, mesh=improved(run.raw, study.source.domain, run.target, options, monitor))
 
 
@@ -140,6 +155,17 @@ def _judge(study: Study, method: str, run: MethodRun, monitor: Monitor) -> Metho
         run.mesh, source.reference, beta=options.beta, ideal=ideal, threads=options.threads, monitor=monitor
     )
     return replace(run, report=report)
+
+
+def _asked(study: Study) -> SizeFunction:
+    """Return the sizes that R = 1 means: beta times the user's, eq. (3)."""
+    beta, reference = study.options.beta, study.source.reference
+    if beta == 1.0:
+        return reference
+    field = study.source.field.with_sizes(beta * study.source.field.sizes)
+    if not isinstance(reference, AnalyticSize):
+        return field
+    return replace(reference, function=lambda x, y: beta * reference.function(x, y), field=field)
 
 
 def _with_threads(options: StudyOptions) -> StudyOptions:

@@ -112,7 +112,8 @@ def _method_numbers(run: MethodRun) -> dict[str, Any]:
     report = run.report
     assert report is not None
     seconds = {**run.seconds, "total": run.total_seconds}
-    return {**report.summary(), "seconds": {stage: round(taken, 4) for stage, taken in seconds.items()}}
+    promise = {} if run.guarantee is None else {"guarantee": run.guarantee.verdict}
+    return {**report.summary(), **promise, "seconds": {stage: round(taken, 4) for stage, taken in seconds.items()}}
 
 
 def _plain(value: Any) -> Any:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from sizeviz.conformity import MeshReport
     from sizeviz.geometry import QuadMesh
+    from sizeviz.improvement import GuaranteeReport
     from sizeviz.sizing import SizeField
     from sizeviz.sources import Source
 
@@ -36,6 +37,10 @@ class MethodRun:
         Its judgement against the field the user gave.
     seconds : mapping of str to float
         Wall-clock time by stage, for the stages that were run.
+    tight : SizeField, optional
+        What the guaranteed mesh is generated for: ``target``, finer where that has no slack; made with the mesh.
+    guarantee : GuaranteeReport, optional
+        What the guarantee reached; made with the improved mesh.
     """
 
     target: SizeField | None = None
@@ -43,6 +48,8 @@ class MethodRun:
     mesh: QuadMesh | None = None
     report: MeshReport | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
+    tight: SizeField | None = None
+    guarantee: GuaranteeReport | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "seconds", MappingProxyType(dict(self.seconds)))
@@ -60,8 +67,8 @@ class MethodRun:
     def cleared_from(self, stage: str) -> MethodRun:
         """Return the run without the results of a stage and of those after it."""
         first = STAGES.index(stage)
-        results = dict(zip(("target", "raw", "mesh", "report"), STAGES, strict=True))
-        dropped = {name: None for name, made_by in results.items() if STAGES.index(made_by) >= first}
+        made_by = {"target": 0, "tight": 1, "raw": 1, "guarantee": 2, "mesh": 2, "report": 3}
+        dropped = {name: None for name, stage_index in made_by.items() if stage_index >= first}
         kept = {name: value for name, value in self.seconds.items() if STAGES.index(name) < first}
         return replace(self, **dropped, seconds=kept)
 
@@ -77,7 +84,7 @@ class Study:
     options : StudyOptions
         What is asked for.
     runs : mapping of str to MethodRun
-        Results by method: 'none', 'gradient-limiting', 'size-preserving'.
+        Results by method: 'none', 'gradient-limiting', 'size-preserving', 'guaranteed'.
     """
 
     source: Source
@@ -110,6 +117,7 @@ def first_stale_stage(method: str, old: StudyOptions, new: StudyOptions) -> str 
     own_old, own_new = {
         "gradient-limiting": (old.limit, new.limit),
         "size-preserving": (old.preserve, new.preserve),
+        "guaranteed": (old.preserve, new.preserve),
     }.get(method, (None, None))
     if old.beta != new.beta or own_old != own_new:
         return "field"

@@ -99,3 +99,11 @@ def test_comparable_slope_is_one_over_alpha() -> None:
 def test_threads_must_be_at_least_one() -> None:
     with pytest.raises(InputError, match="threads is 0"):
         StudyOptions(threads=0)
+
+
+def test_the_guarantee_is_cleared_with_the_mesh_it_belongs_to() -> None:
+    run = MethodRun(**{name: object() for name in ("target", "tight", "raw", "mesh", "guarantee", "report")})
+    smoothed_again = run.cleared_from("smooth")
+    assert smoothed_again.tight is run.tight and smoothed_again.raw is run.raw
+    assert smoothed_again.guarantee is None and smoothed_again.mesh is None and smoothed_again.report is None
+    assert run.cleared_from("mesh").tight is None
