@@ -6,7 +6,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, UnusedCliTokensError
 
 from sizeviz import __version__
 from sizeviz.errors import Cancelled, InputError, SizevizError
@@ -18,6 +18,7 @@ DEBUG_VARIABLE = "SIZEVIZ_DEBUG"
 """Set in the environment, it shows the traceback of an error that should not have happened."""
 
 COMMANDS: dict[str, tuple[str, str]] = {
+    "gui": ("sizeviz.cli.gui:gui", "Open the window; so does sizeviz alone."),
     "compare": ("sizeviz.cli.compare:compare", "Gradient limiting beside size preserving, like with like."),
     "run": ("sizeviz.cli.single:run", "One pipeline: process the field, mesh, smooth, judge."),
     "adapt": ("sizeviz.cli.adapt:adapt", "The adaptive process: each mesh is the background of the next."),
@@ -40,6 +41,14 @@ for _order, (_name, (_where, _help)) in enumerate(COMMANDS.items()):
     app.command(_where, name=_name, help=_help, sort_key=_order)
 
 
+@app.default
+def _window() -> int:
+    """Open the window."""
+    from sizeviz.cli.gui import window
+
+    return window()
+
+
 def run_command_line(arguments: Sequence[str]) -> int:
     """Run one command.
 
@@ -55,6 +64,9 @@ def run_command_line(arguments: Sequence[str]) -> int:
     """
     try:
         code = app(list(arguments), exit_on_error=False, print_error=False, result_action="return_value")
+    except UnusedCliTokensError as problem:
+        extra = " ".join(problem.unused_tokens or ())[:80]
+        return complain(f"{extra!r} is no command or argument here (see sizeviz --help)", 2)
     except CycloptsError as problem:
         return complain(f"{_one_line(problem)} (see sizeviz --help)", 2)
     except InputError as problem:
