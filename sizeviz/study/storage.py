@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import glob
 import hashlib
+import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path, PurePosixPath
@@ -25,6 +28,9 @@ from sizeviz.study.study import Study
 
 if TYPE_CHECKING:
     from sizeviz.sizing import SizeField
+
+_OLD = 24 * 3600.0
+"""Age in seconds at which a half-written file cannot belong to a running save."""
 
 SUFFIX = ".sizeviz"
 """What the name of a study file ends in."""
@@ -78,6 +84,7 @@ def write_study(path: str | Path, content: StudyFile, *, embed: bool = True) -> 
         If the place cannot be written, or the study holds a Python function.
     """
     path = Path(path)
+    _clear_old_halves(path)
     writer = ArrayWriter()
     packer = Packer(writer)
     study = content.study
@@ -119,6 +126,14 @@ def read_study(path: str | Path) -> StudyFile:
         original = None if text.original is None else unpacker.field(text.original, "original")
         study = Study(_source(path, text.source, unpacker), options, runs)
         return StudyFile(study, _strokes(text, unpacker), original, view, text.origin)
+
+
+def _clear_old_halves(path: Path) -> None:
+    """Remove what saves of this file left that were killed half-way, a day ago or earlier."""
+    with contextlib.suppress(OSError):
+        for half in path.parent.glob(f".{glob.escape(path.stem[:80])}.*.part{path.suffix}"):
+            if time.time() - half.stat().st_mtime > _OLD:
+                half.unlink(missing_ok=True)
 
 
 def _packed_source(path: Path, content: StudyFile, packer: Packer, embed: bool) -> dict[str, Any]:

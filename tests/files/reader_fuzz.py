@@ -7,6 +7,7 @@ way it knows, in worker processes with a time limit per case and a limit on memo
 from __future__ import annotations
 
 import argparse
+import io
 import multiprocessing
 import random
 import re
@@ -16,6 +17,7 @@ import sys
 import tempfile
 import time
 import traceback
+import zipfile
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -35,6 +37,7 @@ TABLES = {
     "image": registry.IMAGE_READERS,
     "mesh": registry.MESH_READERS,
     "domain": registry.DOMAIN_READERS,
+    "study": {".sizeviz": "read_study"},
 }
 SECONDS = 5.0
 """A case that takes longer hangs."""
@@ -178,10 +181,25 @@ def cases(count: int, seed: int) -> Iterator[tuple[int, str, str, bytes, bytes |
         taken: Seed = draw.choice(same)
         table = draw.choice([name for name, readers in TABLES.items() if taken.suffix in readers])
         damaged = mutated(taken.data, draw.choice(same).data, draw)
+        if taken.suffix == ".sizeviz" and draw.random() < 0.7:
+            damaged = with_damaged_member(taken.data, draw)
         beside = taken.beside
         if beside is not None and draw.random() < 0.3:
             beside = mutated(beside, taken.data, draw)
         yield number, table, taken.suffix, damaged, beside
+
+
+def with_damaged_member(data: bytes, draw: random.Random) -> bytes:
+    """Return a study with one member damaged before it was packed, so that its checksum is right."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        content = {name: archive.read(name) for name in archive.namelist()}
+    name = "study.json" if draw.random() < 0.7 else draw.choice(sorted(content))
+    content[name] = mutated(content[name], content[name], draw)
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for member, old in content.items():
+            archive.writestr(zipfile.ZipInfo(member), old)
+    return buffer.getvalue()
 
 
 def tried(table: str, suffix: str, data: bytes, beside: bytes | None, folder: Path) -> Outcome:
@@ -222,7 +240,13 @@ def judged_message(text: str, reader: str, table: str, suffix: str) -> Outcome:
 def read_file(table: str, path: Path, data: bytes, beside: bytes | None) -> None:
     if beside is not None:
         path.with_suffix({".sol": ".mesh", ".mesh": ".sol"}[path.suffix]).write_bytes(beside)
-    registry.parsed(TABLES[table], data, path, "something")
+    if table == "study":
+        from sizeviz.study.storage import read_study
+
+        path.write_bytes(data)
+        read_study(path)
+    else:
+        registry.parsed(TABLES[table], data, path, "something")
 
 
 def read_formula(text: str) -> None:

@@ -68,6 +68,7 @@ def seeds() -> tuple[Seed, ...]:
         folder = Path(name)
         return (
             *_own(folder),
+            *_studies(folder),
             *_vtk(folder),
             *_pictures(),
             *_medical(folder),
@@ -91,6 +92,25 @@ def _own(folder: Path) -> list[Seed]:
         arrays = {"ratio": np.linspace(0, 1, 9)}, {"h": np.linspace(1, 2, 16)}
         found.append(Seed(suffix, write_mesh(folder / f"m{suffix}", quads, *arrays).read_bytes()))
     return found
+
+
+def _studies(folder: Path) -> list[Seed]:
+    """Return a study with one finished run and two strokes."""
+    from sizeviz.conformity import MeshReport
+    from sizeviz.geometry import Domain
+    from sizeviz.sources.painting import Brush, Stroke
+    from sizeviz.sources.source import Source
+    from sizeviz.study import MethodRun, Study
+    from sizeviz.study.storage import StudyFile, write_study
+
+    field, mesh = grid_field(), quad_mesh()
+    ones = np.ones(mesh.n_quads)
+    report = MeshReport(ones, {"mean-edge": ones, "sqrt-area": ones, "max-edge": ones}, ones, mesh.n_points, 0.0)
+    source = Source("s", "seed", Domain.rectangle(*field.background.bounds), field, field)
+    run = MethodRun(triangle_field(), mesh, mesh, report, {"mesh": 1.0})
+    strokes = (Stroke(Brush(), np.ones((2, 2))), Stroke(Brush(mask=(0.0, 1.0)), np.zeros((3, 2)), "line"))
+    content = StudyFile(Study(source).with_run("none", run), strokes, field, {"dark": True})
+    return [Seed(".sizeviz", write_study(folder / "s.sizeviz", content).read_bytes())]
 
 
 def vtk_grid(with_quads: bool = False) -> object:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import zipfile
 from collections.abc import Callable, Mapping
@@ -115,6 +116,15 @@ def test_equal_studies_are_equal_files_and_arrays_are_kept_once(tmp_path: Path, 
     assert len(names) == len(set(names))
     sizes = [name for name in names if zipfile.ZipFile(a).getinfo(name).file_size == 128 + 8 * 17 * 17]
     assert len(sizes) == 5, "the sizes as given, of the three targets that differ, and the tight ones"
+
+
+def test_halves_of_killed_saves_are_cleared_away_in_time(tmp_path: Path) -> None:
+    old, fresh = tmp_path / ".a.0123456789abcdef.part.sizeviz", tmp_path / ".a.fedcba9876543210.part.sizeviz"
+    old.write_bytes(b"half")
+    fresh.write_bytes(b"half")
+    os.utime(old, (1, 1))
+    path = write_study(tmp_path / "a.sizeviz", StudyFile(Study(valley_source(5))))
+    assert sorted(tmp_path.iterdir()) == sorted([fresh, path])
 
 
 SOURCES: dict[str, Callable[[], Source]] = {
