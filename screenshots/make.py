@@ -34,7 +34,7 @@ def main(names: list[str]) -> int:
         if runner is None:
             print("screenshots need a display; install a virtual one: apt-get install xvfb xauth", file=sys.stderr)
             return 1
-        command = [runner, "-a", "-s", f"-screen 0 {SCREEN}", sys.executable, str(Path(__file__)), *names]
+        command = [runner, "-a", "-s", f"-screen 0 {SCREEN} -dpi 96", sys.executable, str(Path(__file__)), *names]
         return subprocess.run(command, check=False).returncode
     sys.path.insert(0, str(ROOT / "tests"))
     wanted = names or ["thumbnails", "compare", *SCENES]
@@ -73,14 +73,10 @@ def make_thumbnails(size: int = 192) -> None:
 
 
 def make_comparison() -> None:
-    """Write the comparison of both methods on the ring, as the command line does."""
-    from sizeviz.scene import save_comparison
-    from sizeviz.sources import load
-    from sizeviz.study import Study, StudyOptions, run
+    """Write the comparisons of both methods, as the command line does."""
+    import make_comparisons
 
-    study = run(Study(load("ring"), StudyOptions().with_comparable_slope()))
-    save_comparison(study, HERE / "compare-ring.png")
-    print("compare-ring.png")
+    make_comparisons.main()
 
 
 def make_scenes(scenes: dict[str, Callable[[Person, Path], None]]) -> None:
@@ -92,7 +88,7 @@ def make_scenes(scenes: dict[str, Callable[[Person, Path], None]]) -> None:
     from sizeviz.app.settings import Settings
     from sizeviz.app.window import MainWindow
 
-    application()
+    app = application()  # kept: Qt ends with it
     with tempfile.TemporaryDirectory() as folder:
         window = MainWindow(PipelineEngine(), Settings(str(Path(folder) / "settings.ini")))
         window.resize(*SIZE)
@@ -104,6 +100,7 @@ def make_scenes(scenes: dict[str, Callable[[Person, Path], None]]) -> None:
             play(person, HERE / f"{name}.png")
             print(f"{name}.png")
         window.close()
+    app.processEvents()
 
 
 def welcome(person: Person, path: Path) -> None:

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from sizeviz.app.engine import Example
 
 CARD = QSize(124, 124)
-COLUMNS = 5
 
 
 class Welcome(QWidget):
@@ -49,6 +48,7 @@ class Welcome(QWidget):
         frame = QFrame()
         grid = QGridLayout(frame)
         grid.setSpacing(12)
+        columns = len(examples) if len(examples) <= 5 else -(-len(examples) // 2)
         for k, example in enumerate(examples):
             card = QToolButton()
             card.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
@@ -58,7 +58,7 @@ class Welcome(QWidget):
             card.setToolTip(f"<b>{example.title}</b><br>{example.words}")
             card.setAccessibleName(f"Open the example {example.title}")
             card.clicked.connect(lambda checked=False, name=example.name: self.open_requested.emit(name))
-            grid.addWidget(card, k // COLUMNS, k % COLUMNS)
+            grid.addWidget(card, k // columns, k % columns)
         return frame
 
     def _buttons(self) -> QHBoxLayout:

@@ -11,7 +11,7 @@ from sizeviz.app.panes.colorbar import ColorBar, ColorBarEditor
 from sizeviz.app.panes.surface import Surface
 from sizeviz.scene.compose import compose
 from sizeviz.scene.subject import METHOD_TITLES, Subject
-from sizeviz.scene.view import QUANTITIES, ViewState
+from sizeviz.scene.view import FIELD_QUANTITIES, QUANTITIES, ViewState
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,6 +61,10 @@ class Pane(QFrame):
             self.method.addItem(METHOD_TITLES[name], name)
         for quantity, words in QUANTITIES.items():
             self.quantity.addItem(words, quantity)
+        for box, width in ((self.method, 152), (self.quantity, 160)):
+            box.setMinimumWidth(90)  # headers must not make one pane wider than the other
+            box.setMaximumWidth(width)
+            box.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.detail = QLabel()
         self.detail.setProperty("role", "muted")
         self.detail.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
@@ -105,7 +109,8 @@ class Pane(QFrame):
         self.detail.setToolTip(spec.detail)
         self.method.setToolTip(f"{spec.title}: {spec.detail}")
         self._say(spec)
-        self.badge.setVisible(stale and spec.scale is not None)
+        about_mesh = self.view.color_by not in FIELD_QUANTITIES
+        self.badge.setVisible(stale and about_mesh and spec.scale is not None)
 
     def set_edge_rule(self, rule: Callable[[], bool]) -> None:
         """Give the rule that says whether elements are now large enough for their edges."""
@@ -146,7 +151,7 @@ class Pane(QFrame):
         head.setContentsMargins(8, 7, 8, 5)
         head.setSpacing(6)
         for widget in (self.method, self.quantity):
-            head.addWidget(widget)
+            head.addWidget(widget, 3)
         head.addSpacing(4)
         head.addWidget(self.detail, 1)
         head.addWidget(self.badge)

@@ -1,0 +1,126 @@
+"""The panes with OpenGL: what is seen is what the scene says, and nothing grows."""
+
+from __future__ import annotations
+
+import resource
+import threading
+
+import numpy as np
+import pytest
+from app.driver import Person, blue_share, orange_share
+from app.fakes import FakeEngine, fake_source
+from qtpy.QtWidgets import QWidget
+
+from sizeviz.app.panes.canvas import GLCanvas
+from sizeviz.app.settings import Settings
+from sizeviz.app.window import MainWindow
+
+pytestmark = pytest.mark.display
+
+
+@pytest.fixture
+def window(qtbot, tmp_path):
+    window = MainWindow(FakeEngine(), Settings(str(tmp_path / "settings.ini")))
+    qtbot.addWidget(window)
+    window.resize(1300, 800)
+    window.show()
+    window.activateWindow()
+    qtbot.waitUntil(window.isActiveWindow, timeout=5000)
+    with qtbot.waitSignal(window.controller.settled, timeout=10_000):
+        window.controller.open_source("ring")
+    yield window
+    window.close()
+
+
+def test_the_middle_of_an_element_has_exactly_its_color(window) -> None:
+    person, pane = Person(window), window.board.panes[1]
+    picture = person.look_at(pane)
+    ratio = window.devicePixelRatioF()
+    mesh, colors = pane.subject.mesh, pane.spec.layers[0].colors
+    hits = 0
+    for element in range(0, mesh.n_quads, 29):
+        x, y = mesh.points[mesh.quads[element]].mean(axis=0)
+        spot = person.spot(pane, float(x), float(y))
+        seen = picture[round(spot.y() * ratio), round(spot.x() * ratio)].astype(int)
+        hits += int(np.abs(seen - colors[element].astype(int)).max() <= 2)
+    assert hits == len(range(0, mesh.n_quads, 29))
+
+
+def test_another_quantity_another_picture_and_back(window) -> None:
+    person, pane = Person(window), window.board.panes[0]
+    first = person.look_at(pane)
+    assert orange_share(first) > 0.05 and blue_share(first) > 0.05
+    window.actions_["color-target"].trigger()
+    assert orange_share(person.look_at(pane)) < 0.01
+    window.actions_["color-ratio"].trigger()
+    assert np.abs(person.look_at(pane).astype(int) - first.astype(int)).mean() < 0.5
+
+
+def test_painting_is_seen_while_the_button_is_down(window) -> None:
+    person, (pane, other) = Person(window), window.board.visible_panes
+    window.actions_["paint"].trigger()
+    window.paint.value.set_value(0.001)
+    window.paint.radius.set_value(0.2)
+    before, target = person.look_at(pane), person.look_at(other)
+    person.drag(pane, [(0.2, 0.2), (0.3, 0.2)], lift=False)
+    person.wait(lambda: bool(window.controller.preview.targets), 5.0)
+    assert np.abs(person.look_at(pane).astype(int) - before.astype(int)).mean() > 2.0
+    assert np.abs(person.look_at(other).astype(int) - target.astype(int)).mean() > 0.5
+    window.controller.abort_stroke()
+    assert np.abs(person.look_at(pane).astype(int) - before.astype(int)).mean() < 2.0
+
+
+def test_memory_stays_flat_over_many_studies(window) -> None:
+    person = Person(window)
+
+    def resident() -> float:
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * resource.getpagesize() / 1e6
+
+    for round_ in range(2):
+        for k in range(30):
+            window.controller.store.amend(window.controller.study.with_source(fake_source(f"s{round_}{k}")))
+            window.controller.apply()
+            person.wait(lambda: not window.controller.jobs.is_busy and not window.controller.missing(), 10.0)
+            person.rest(5)
+        if round_ == 0:
+            before = resident()
+    assert resident() - before < 40.0
+    assert all(len(pane.surface.canvas._view.actors) <= 6 for pane in window.board.visible_panes)
+
+
+def test_vtk_is_only_touched_in_the_windows_thread(window, monkeypatch) -> None:
+    threads: set[int] = set()
+    for name in ("show_scene", "look", "refresh", "show_edges"):
+        original = getattr(GLCanvas, name)
+
+        def watched(self, *args, original=original):
+            threads.add(threading.get_ident())
+            return original(self, *args)
+
+        monkeypatch.setattr(GLCanvas, name, watched)
+    person = Person(window)
+    window.controller.set_source(fake_source("again"), "Open again")
+    person.wait_settled(10)
+    window.actions_["paint"].trigger()
+    person.drag(window.board.panes[0], [(0.2, 0.2), (0.4, 0.4)])
+    person.wait_settled(10)
+    assert threads == {threading.get_ident()}
+
+
+def test_an_idle_window_draws_nothing(window, monkeypatch) -> None:
+    person, drawn = Person(window), []
+    person.rest(300)
+    for pane in window.board.visible_panes:
+        pane.surface.canvas._view.ren_win.AddObserver("StartEvent", lambda *_: drawn.append(1))
+    person.rest(600)
+    assert drawn == [] and not window.controller.jobs._timer.isActive()
+
+
+def test_canvases_are_made_once(window) -> None:
+    canvases = [pane.surface.canvas for pane in window.board.panes]
+    for count in (4, 2, 3, 2):
+        window.actions_[f"panes-{count}"].trigger()
+    assert [pane.surface.canvas for pane in window.board.panes[:2]] == canvases
+    assert len(window.board.panes) == 4
+    assert all(isinstance(canvas.widget(), QWidget) for canvas in canvases)
