@@ -128,7 +128,9 @@ def ideal_counts(xy, quads, ring, count, boundary, ideal):
             q, k = ring[v, j] >> 2, ring[v, j] & 3
             n, p = quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
             ax, ay, bx, by = xy[n, 0] - xy[v, 0], xy[n, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
-            angle += math.atan2(ax * by - ay * bx, ax * bx + ay * by)
+            turn = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
+            # a straight side seen from one element may come out as minus pi
+            angle += turn if turn > -0.5 * math.pi else turn + 2.0 * math.pi
         ideal[v] = max(1, round(angle / (0.5 * math.pi)))
 
 

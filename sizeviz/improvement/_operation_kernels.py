@@ -27,8 +27,8 @@ DOUBLET, COLLAPSE, SWAP, ROTATE, OPEN, PILLOW = (np.int64(kind) for kind in rang
 CLOCKWISE, COUNTER = np.int64(0), np.int64(1)
 LOSS, NONE, GAIN = np.int64(-1), np.int64(0), np.int64(1)
 """Typed, as are the kinds, because a literal argument would make numba compile one more variant of a kernel."""
-DEGENERATE = 16
-"""Extra energy of an inner node with two elements, and of a flat boundary node with one."""
+DEGENERATE = 10_000
+"""Extra energy of an inner node with two elements, and of a flat boundary node with one: they must go."""
 
 
 @compiled

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 STEEP = 0.15
 """Mean slope of the target, weighted by elements, above which its valleys count as steep."""
 SECOND_SCALE = 0.75
-"""Where the field is no grid, h* with this alpha takes the place of the minimum within a radius."""
+SECOND_SHARE = 0.9
+"""Where the field is no grid, h* of this alpha and share of the factor stands for the minimum within a radius."""
 PLATEAU = 0.3
 """Share of the elements that lie on the floor of the field from which a plateau rules."""
 
@@ -92,8 +93,9 @@ def tightened(
     if field.background.grid is not None and field.background.grid == target.background.grid:
         least = _grid_minima(field, radius * target.sizes)
         return target.with_sizes(np.minimum(target.sizes, factor * least), f"{target.label}, tight")
-    closer = preserved(field, PreserveOptions(alpha=SECOND_SCALE, beta=factor), monitor=monitor)
-    return replace(minimum([target, closer]), label=f"{target.label}, tight")
+    closer = preserved(field, PreserveOptions(alpha=SECOND_SCALE, beta=SECOND_SHARE * factor), monitor=monitor)
+    lower = target.with_sizes(factor * target.sizes)
+    return replace(minimum([lower, closer]), label=f"{target.label}, tight")
 
 
 def _grid_minima(field: SizeField, reach: NDArray[np.float64]) -> NDArray[np.float64]:
