@@ -94,11 +94,14 @@ def draw_edges(axes: Any, mesh: QuadMesh, bounds: tuple[float, float, float, flo
     from matplotlib.path import Path as Line
 
     quads = mesh.quads[inside(mesh, bounds)]
-    pairs = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    segments = mesh.points[np.unique(pairs, axis=0)]
+    one, other = quads.astype(np.int64).ravel(), np.roll(quads, -1, axis=1).astype(np.int64).ravel()
+    keys = np.unique(np.minimum(one, other) * mesh.n_points + np.maximum(one, other))
+    segments = mesh.points[np.column_stack([keys // mesh.n_points, keys % mesh.n_points])]
     codes = np.tile(np.array([Line.MOVETO, Line.LINETO], dtype=np.uint8), len(segments))
     path = Line(segments.reshape(-1, 2), codes)
-    axes.add_patch(PathPatch(path, fill=False, edgecolor=INK, linewidth=width, rasterized=len(quads) > MOST_VECTORS))
+    lines = PathPatch(path, fill=False, edgecolor=INK, linewidth=width, rasterized=len(quads) > MOST_VECTORS)
+    lines.set_in_layout(False)  # the panel's frame is the extent; measuring a hundred thousand lines takes longer
+    axes.add_artist(lines)  # add_patch would go through every line to find the extent
     bare(axes, bounds)
 
 
@@ -118,6 +121,7 @@ def draw_cells(
     colors = scale.colors(values[rows]) / 255.0
     faces = PolyCollection(list(mesh.points[mesh.quads[rows]]), facecolors=colors, edgecolors=colors, rasterized=many)
     faces.set(linewidth=0.1, antialiased=not many)
+    faces.set_in_layout(False)
     axes.add_collection(faces)
     bare(axes, bounds)
     draw_bar(figure, axes, scale)

@@ -52,9 +52,9 @@ def save_adaptation(found: Sequence[Adaptation], method: str, folder: Path, name
     shown, mesh = found[0], found[0].last_mesh().mesh
     last = shown.evolution.iterations[-1]
     figure, panels = sheet((2, 2))
-    title(panels[0], f"(a) {WORDS[method]}, {shown.mesher}: iteration {last.number}, {last.n_quads:,} elements")
+    title(panels[0], f"(a) {WORDS[method]}, iteration {last.number}: {last.n_quads:,} elements")
     draw_edges(panels[0], mesh, (0.0, 0.0, 1.0, 1.0), width=0.12)
-    title(panels[1], f"(b) detail, {1000 * (DETAIL[2] - DETAIL[0]):g} thousandths across")
+    title(panels[1], f"(b) detail ({shown.mesher}), {DETAIL[2] - DETAIL[0]:.3f} across")
     draw_edges(panels[1], mesh, DETAIL, width=0.5)
     curves = {one.mesher: one.evolution for one in found}
     title(panels[2], "(c) R against the background of the iteration")
@@ -68,7 +68,7 @@ def save_image_and_size(source: Source, folder: Path, name: str) -> None:
     """Write Figure 6: an image, and the sizes from its curvature."""
     assert source.image is not None
     x0, y0, x1, y1 = source.domain.bounds
-    figure, panels = sheet((1, 2), (3.4, 3.9))
+    figure, panels = sheet((1, 2), (3.5, 4.3))
     title(panels[0], f"(a) {source.image.label}")
     grey = _linear(source.image.values, "grey", "intensity")
     panels[0].imshow(_painted(grey, source.image.values), origin="lower", extent=(x0, x1, y0, y1))
@@ -90,10 +90,13 @@ def save_image_run(one: ImageRun, method: str, scales: Mapping[str, ColorScale],
     run = one.runs[method]
     assert run.mesh is not None and run.report is not None
     bounds = one.source.domain.bounds
-    figure, panels = sheet((1, 2), (3.4, 3.9))
-    title(panels[0], f"(a) {WORDS[method]}, {one.mesher}: {run.mesh.n_quads:,} elements")
+    figure, panels = sheet((1, 2), (3.5, 4.3))
+    title(panels[0], f"(a) {WORDS[method]}: {run.mesh.n_quads:,} elements")
     draw_cells(figure, panels[0], run.mesh, image_errors(one.source, run), scales["error"], bounds)
-    title(panels[1], f"(b) R ≤ 1: {_floor(run.report.correct_percent['mean-edge'])} %, largest {_largest(run):.3f}")
+    title(
+        panels[1],
+        f"(b) R ≤ 1: {_floor(run.report.correct_percent['mean-edge'])} %, largest {_largest(run):.3f} ({one.mesher})",
+    )
     draw_cells(figure, panels[1], run.mesh, run.report.ratios["mean-edge"], scales["ratio"], bounds)
     save(figure, folder, name)
 
