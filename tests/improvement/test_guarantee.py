@@ -1,0 +1,68 @@
+"""The tight field and the guarantee."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sizeviz.conformity import shape_quality
+from sizeviz.errors import InputError
+from sizeviz.geometry import QuadMesh
+from sizeviz.improvement import GuaranteeOptions, SmoothOptions, TightOptions, guaranteed, tightened
+from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, preserved
+from tests.improvement.squares import disturbed, uniform, unit
+
+
+def bowl(n: int = 65) -> SizeField:
+    background = BackgroundMesh.unit_square_grid(n, n)
+    return SizeField(background, 0.03 + 0.1 * np.hypot(*(background.points - 0.5).T), "bowl")
+
+
+def test_the_tight_field_lies_below_both_and_above_the_brute_force_minimum() -> None:
+    field = bowl()
+    target = preserved(field, PreserveOptions())
+    tight = tightened(field, target, TightOptions(radius=1.5, factor=0.9))
+    points = field.background.points
+    assert (tight.sizes <= target.sizes).all()
+    rows = np.random.default_rng(0).integers(0, len(points), 200)
+    away = np.hypot(*(points[rows, None] - points[None]).transpose(2, 0, 1))
+    # squares of nodes stand for the circle: they may reach a cell or so beyond it
+    wide = np.where(away <= 1.5 * target.sizes[rows, None] + 3 / 64, field.sizes, np.inf).min(axis=1)
+    assert (tight.sizes[rows] >= np.minimum(target.sizes[rows], 0.9 * wide) - 1e-12).all()
+    near = np.where(away <= 0.5 * target.sizes[rows, None], field.sizes, np.inf).min(axis=1)
+    assert (tight.sizes[rows] <= np.maximum(0.9 * near, tight.sizes.min()) + 1e-12).all()
+
+
+def test_a_fine_enough_mesh_is_guaranteed() -> None:
+    field = bowl()
+    mesh = disturbed(40, 0.35, 2)
+    result, report = guaranteed(mesh, unit(), preserved(field, PreserveOptions()), field)
+    assert report.holds
+    assert "all" in report.verdict
+    corner = result.points[result.quads]
+    longest = np.hypot(*(np.roll(corner, -1, axis=1) - corner).transpose(2, 0, 1)).max(axis=1)
+    assert (longest <= field.min_over(result.points, result.quads) * (1 + 1e-9)).all()
+    assert (shape_quality(result) > 0.5).all()
+
+
+def test_what_cannot_be_satisfied_is_reported() -> None:
+    mesh = disturbed(4, 0.0, 0)
+    held = QuadMesh(mesh.points, mesh.quads, mesh.curve, np.ones(mesh.n_points, dtype=bool))
+    result, report = guaranteed(
+        held, unit(), uniform(0.1), uniform(0.1), GuaranteeOptions(smooth=SmoothOptions(cleanup=False), rounds=2)
+    )
+    assert not report.holds
+    assert len(report.elements) == result.n_quads
+    assert report.ratios == pytest.approx(2.5)
+    assert "16 with an edge between two fixed nodes" in report.verdict
+
+
+@pytest.mark.parametrize(("name", "value"), [("radius", 0.0), ("radius", np.nan), ("factor", 1.5)])
+def test_tight_options_out_of_range_are_refused(name: str, value: float) -> None:
+    with pytest.raises(InputError, match=name):
+        TightOptions(**{name: value})
+
+
+def test_guarantee_options_out_of_range_are_refused() -> None:
+    with pytest.raises(InputError, match="rounds"):
+        GuaranteeOptions(rounds=-1)

@@ -1,0 +1,99 @@
+"""Each operation on the connectivity: applied, undone bit for bit, and what it changes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from sizeviz.geometry import QuadMesh
+from sizeviz.improvement import SmoothOptions
+from sizeviz.improvement import _attempt_kernels as attempts
+from sizeviz.improvement import _operation_kernels as operations
+from sizeviz.improvement._workspace import Workspace
+from sizeviz.improvement.cleanup import Cleaner
+from tests.improvement.squares import disturbed, edge_uses, uniform, unit
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+ANY, NONE = 1e9, -1e9
+"""Worth of valence energy that makes every valid operation stand, and one that lets none stand."""
+NEW_ELEMENTS = {"collapse": -1, "swap": 0, "rotate": 0, "open": 1, "pillow": 4}
+
+
+def prepared(n: int = 10) -> tuple[Workspace, Cleaner]:
+    work = Workspace(disturbed(n, 0.1, 1), unit(), uniform(1.0 / n), SmoothOptions(threads=1))
+    work.sweep(2)
+    return work, Cleaner(work)
+
+
+def state(cleaner: Cleaner) -> list[NDArray[Any]]:
+    work = cleaner.work
+    return [a.copy() for a in (work.xy, work.quads, work.ring, work.count, work.station, work.sizes, work.inv)]
+
+
+def tried(cleaner: Cleaner, kind: str, worth: float) -> int:
+    """Try one operation at the node nearest to the middle; return how many nodes it moved, 0 where it was undone."""
+    work, tile = cleaner.work, cleaner.tiles[0]
+    away = np.hypot(*(work.xy - 0.5).T) + np.where(work.count == 4, 0.0, 9.0)
+    code = work.ring[int(np.argmin(away)), 0]
+    aims = (work.size.sampler, work.sizes, work.inv, work.hint, work.bound, work.scale**2)
+    number = getattr(operations, kind.upper())
+    law = (work.objective, worth, 0.0, 1e9)
+    argument = np.int64(2 if kind == "open" else 0)
+    return attempts.attempt(
+        number, np.int64(code), argument, np.int64(-1), cleaner.patch, cleaner.topo, cleaner._marks(tile), aims,
+        work.rails, law, tile.room, tile.tops,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", sorted(NEW_ELEMENTS))
+def test_an_operation_that_stands_keeps_area_and_topology(kind: str) -> None:
+    work, cleaner = prepared()
+    before = work.result()
+    assert tried(cleaner, kind, ANY) > 0
+    after = work.result()
+    assert after.n_quads == before.n_quads + NEW_ELEMENTS[kind]
+    assert after.areas.sum() == pytest.approx(1.0, abs=1e-12)
+    assert edge_uses(after).max() == 2
+    assert after.n_points - len(edge_uses(after)) + after.n_quads == 1
+    alive = np.flatnonzero(work.quads[:, 0] >= 0)
+    for v in range(len(work.xy)):
+        around = sorted(4 * q + k for q in alive for k in range(4) if work.quads[q, k] == v)
+        assert sorted(work.ring[v, : work.count[v]]) == around
+
+
+@pytest.mark.parametrize("kind", sorted(NEW_ELEMENTS))
+def test_an_operation_that_does_not_stand_leaves_no_trace(kind: str) -> None:
+    work, cleaner = prepared()
+    before = state(cleaner)
+    tops = cleaner.tiles[0].tops.copy()
+    assert tried(cleaner, kind, NONE) == 0
+    for old, new in zip(before, state(cleaner), strict=True):
+        assert np.array_equal(old[: len(work.xy)], new[: len(work.xy)]) or _same_where_alive(old, new, before)
+    assert np.array_equal(cleaner.tiles[0].tops[:2], tops[:2])
+
+
+def _same_where_alive(old: NDArray[Any], new: NDArray[Any], before: list[NDArray[Any]]) -> bool:
+    """Compare live rows only: what a dead element or node holds means nothing."""
+    alive = before[3] > 0 if len(old) == len(before[3]) else before[1][:, 0] >= 0
+    return np.array_equal(old[alive], new[alive])
+
+
+def test_a_doublet_becomes_one_element() -> None:
+    mesh = disturbed(6, 0.1, 0)
+    a, b, c, d = mesh.quads[14]
+    middle = mesh.n_points
+    quads = np.vstack([np.delete(mesh.quads, 14, axis=0), [[middle, a, b, c]], [[middle, c, d, a]]])
+    points = np.vstack([mesh.points, mesh.points[mesh.quads[14]].mean(axis=0)])
+    doubled = QuadMesh(points, quads, np.append(mesh.curve, -1), np.append(mesh.fixed, False))
+    work = Workspace(doubled, unit(), uniform(1 / 6), SmoothOptions(threads=1))
+    work.aim()
+    cleaner = Cleaner(work)
+    assert cleaner.run(-1000, 4) == 1
+    result = work.result()
+    assert result.n_quads == mesh.n_quads
+    assert result.n_points == mesh.n_points
+    assert result.areas.sum() == pytest.approx(1.0, abs=1e-12)
