@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.geometry import QuadMesh
+from sizeviz.geometry.arrays import read_only
 from sizeviz.scene.colormaps import color_map
 from sizeviz.scene.scale import CORRECT, ColorScale, ratio_scale
 from sizeviz.scene.spec import Bounds, CellLayer, Color, ImageLayer, Layer, LineLayer, SceneSpec, TriangleLayer
@@ -104,7 +105,7 @@ def values_of(subject: Subject, view: ViewState) -> NDArray[np.float64] | None:
 
 def scale_for(values: Iterable[NDArray[np.float64]], view: ViewState) -> ColorScale | None:
     """Return the colour bar over one or several sets of values (a shared range), None without any value."""
-    samples = [array[np.isfinite(array)] for array in values]
+    samples = [array if np.isfinite(array).all() else array[np.isfinite(array)] for array in values]
     samples = [array for array in samples if len(array)]
     if not samples:
         return None
@@ -179,12 +180,26 @@ def _field_layers(subject: Subject, view: ViewState, scale: ColorScale | None) -
 
 def field_layer(field: SizeField, scale: ColorScale) -> Layer:
     """Return the layer that shows a size field: one picture where it lives on a grid, triangles elsewhere."""
-    colors = scale.colors(field.sizes)
+    colors = _field_colors(field, scale)
     grid = field.background.grid
     if grid is None:
         return TriangleLayer("field", field.background.points, field.background.triangles, colors)
     x1, y1 = grid.x0 + (grid.nx - 1) * grid.dx, grid.y0 + (grid.ny - 1) * grid.dy
     return ImageLayer("field", colors.reshape(grid.ny, grid.nx, 3), (grid.x0, grid.y0, x1, y1))
+
+
+_RECENT: list[tuple[SizeField, ColorScale, NDArray[np.uint8]]] = []
+"""The last fields coloured: while one field is painted, the others beside it are not coloured anew."""
+
+
+def _field_colors(field: SizeField, scale: ColorScale) -> NDArray[np.uint8]:
+    for known, known_scale, colors in _RECENT:
+        if known is field and known_scale == scale:
+            return colors
+    colors = read_only(scale.colors(field.sizes))
+    _RECENT.insert(0, (field, scale, colors))
+    del _RECENT[4:]
+    return colors
 
 
 def _mesh_layers(

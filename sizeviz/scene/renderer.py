@@ -89,8 +89,10 @@ class Renderer:
                 actor.prop.SetEdgeColor(*_unit(layer.edges))
         elif isinstance(layer, TriangleLayer):
             data.point_data["rgb"] = layer.colors
-        elif isinstance(layer, ImageLayer):
-            actor.SetTexture(_texture(layer.colors))
+        elif isinstance(layer, ImageLayer) and isinstance(old[0], ImageLayer):
+            # a view of the same read-only colours is the same picture
+            if not np.shares_memory(layer.colors, old[0].colors):
+                actor.SetTexture(_texture(layer.colors))
         elif isinstance(layer, LineLayer):
             actor.prop.SetColor(*_unit(layer.color))
             actor.prop.SetLineWidth(layer.width)

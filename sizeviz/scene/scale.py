@@ -89,8 +89,9 @@ class ColorScale:
         """Return the sRGB colour of each value, ``(N, 3)``; a value equal to a break takes the lower colour."""
         fractions = self.fractions(values)
         undefined = np.isnan(fractions)
-        rows = self._rows(np.where(undefined, 0.0, fractions))
-        colors = self.cmap.table[rows]
+        if not undefined.any():
+            return self.cmap.table.take(self._rows(fractions), axis=0)
+        colors = self.cmap.table.take(self._rows(np.where(undefined, 0.0, fractions)), axis=0)
         colors[undefined] = UNDEFINED
         return colors
 
