@@ -98,7 +98,7 @@ def test_space_and_references_and_comments(tmp_path: Path) -> None:
         (MESH.replace("1 2 3 4 9", "1 2 3 5 9"), SOL, "names a point outside"),
         (MESH.replace("1 2 3 4 9", "1 2 3 4.5 9"), SOL, "names no vertex"),
         (MESH.replace("Vertices 4", "Vertices 99999999"), SOL, "399999996 numbers are announced"),
-        (MESH.replace("Vertices", "Verticles"), SOL, "no Vertices"),
+        (MESH.replace("Vertices", "Points"), SOL, "no Vertices"),
         (MESH.replace("\n3\n", "\n4\n"), SOL, "Dimension is"),
         (MESH.replace("MeshVersionFormatted", "Mesh"), SOL, "does not begin with MeshVersionFormatted"),
         ("MeshVersionFormatted\0\1", SOL, "binary file"),
