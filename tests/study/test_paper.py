@@ -128,7 +128,7 @@ def test_the_summary_sets_side_by_side(images):
     names = images[0].runs
     norms = {("slope", "frontal", name): {"mean": 1.0, "rms": 2.0 + k, "max": 9.0} for k, name in enumerate(names)}
     text = summary(PaperOptions(), line_example(), RING, {"slope": images}, norms)
-    assert "converged in 1 iterations (the paper: 4)" in text
+    assert "converged in 1 iteration (the paper: 4)" in text
     assert "did not converge in 2 iterations" in text
     assert "50.0 % larger than gradient limiting's at one mesh scale, and 25.0 % smaller at equal" in text
     assert text.count("| total faces |") == 2

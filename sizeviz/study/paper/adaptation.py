@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from sizeviz.files import read_mesh
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sources import load
 from sizeviz.study.adaptive import AdaptOptions, adapted
+from sizeviz.study.paper.together import together
 from sizeviz.study.pipeline import COMPARED
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from sizeviz.files import MeshFile
+    from sizeviz.sources import Source
     from sizeviz.study.evolution import Evolution
     from sizeviz.study.paper.options import PaperOptions
 
@@ -57,15 +60,19 @@ def adaptations(options: PaperOptions, folder: Path, monitor: Monitor = SILENT) 
         If the monitor says so; finished iterations stay.
     """
     source = load("ring")
-    found = []
-    for k, mesher in enumerate(options.meshers):
-        part = SubMonitor(monitor, k / len(options.meshers), (k + 1) / len(options.meshers))
-        begun = 0.0
-        for method in COMPARED:
-            asked = AdaptOptions(method=method, study=options.study(mesher), iterations=options.iterations)
-            place = folder / f"ring-{method}-{mesher}"
-            share = SubMonitor(part, begun, begun + SHARE[method])
-            found.append(Adaptation(mesher, method, adapted(source, asked, place, share), place))
-            begun += SHARE[method]
+    jobs = [partial(_by_mesher, source, mesher, options, folder) for mesher in options.meshers]
+    return [one for found in together(jobs, monitor) for one in found]
+
+
+def _by_mesher(
+    source: Source, mesher: str, options: PaperOptions, folder: Path, monitor: Monitor = SILENT
+) -> list[Adaptation]:
+    found, begun = [], 0.0
+    for method in COMPARED:
+        asked = AdaptOptions(method=method, study=options.study(mesher), iterations=options.iterations)
+        place = folder / f"ring-{method}-{mesher}"
+        share = SubMonitor(monitor, begun, begun + SHARE[method])
+        found.append(Adaptation(mesher, method, adapted(source, asked, place, share), place))
+        begun += SHARE[method]
     monitor.step(1.0)
     return found

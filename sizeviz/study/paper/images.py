@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sources import load
+from sizeviz.study.paper.together import together
 from sizeviz.study.pipeline import COMPARED, run
 from sizeviz.study.study import MethodRun, Study
 
@@ -49,15 +51,14 @@ def image_runs(name: str, options: PaperOptions, monitor: Monitor = SILENT) -> l
         If the monitor says so.
     """
     source = load(name)
-    found = []
-    for k, mesher in enumerate(options.meshers):
-        part = SubMonitor(monitor, k / len(options.meshers), (k + 1) / len(options.meshers))
-        asked = options.study(mesher)
-        study = run(Study(source, asked), COMPARED, SubMonitor(part, 0.0, 0.6))
-        runs = {method: study.runs[method] for method in COMPARED}
-        runs[EQUAL_COUNT] = _equal_count(source, asked, runs, SubMonitor(part, 0.6, 1.0))
-        found.append(ImageRun(source, mesher, runs))
-    return found
+    return together([partial(_by_mesher, source, mesher, options.study(mesher)) for mesher in options.meshers], monitor)
+
+
+def _by_mesher(source: Source, mesher: str, asked: StudyOptions, monitor: Monitor = SILENT) -> ImageRun:
+    study = run(Study(source, asked), COMPARED, SubMonitor(monitor, 0.0, 0.6))
+    runs = {method: study.runs[method] for method in COMPARED}
+    runs[EQUAL_COUNT] = _equal_count(source, asked, runs, SubMonitor(monitor, 0.6, 1.0))
+    return ImageRun(source, mesher, runs)
 
 
 def _equal_count(source: Source, asked: StudyOptions, runs: dict[str, MethodRun], monitor: Monitor) -> MethodRun:

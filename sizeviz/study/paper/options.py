@@ -8,6 +8,7 @@ from sizeviz.errors import InputError
 from sizeviz.meshing import GENERATORS, MeshOptions
 from sizeviz.sizing import LimitOptions, PreserveOptions
 from sizeviz.study.options import StudyOptions
+from sizeviz.study.paper.together import threads_each
 
 MESHERS: tuple[str, ...] = ("decomposition", "frontal")
 """The paper's own kind of mesher, and ours."""
@@ -26,7 +27,7 @@ class PaperOptions:
     meshers : tuple of str
         Keys of ``GENERATORS``.
     threads : int, optional
-        Worker threads; every core by default.
+        Worker threads; every core by default. The meshers run side by side and share them.
 
     Raises
     ------
@@ -54,5 +55,5 @@ class PaperOptions:
             limit=LimitOptions(epsilon=0.5),
             preserve=PreserveOptions(alpha=2.0),
             mesh=MeshOptions(mesher=mesher, scale=self.scale),
-            threads=self.threads,
+            threads=threads_each(len(self.meshers), self.threads),
         )

@@ -62,7 +62,7 @@ def _process_words(one: Adaptation) -> str:
     count, last = len(evolution.iterations) - 1, evolution.iterations[-1]
     seconds = sum(row.seconds for row in evolution.iterations)
     lowest = min(row.background_ratio for row in evolution.iterations[1:]) if count else last.background_ratio
-    verdict = f"converged in {count} iterations" if evolution.converged else f"did not converge in {count} iterations"
+    verdict = f"{'converged' if evolution.converged else 'did not converge'} in {count} iteration{'s' * (count != 1)}"
     published = "4" if one.method == "size-preserving" else "not in 50, never below 1.28 against the background"
     return (
         f"- {one.method}, {one.mesher}: {verdict} (the paper: {published}); {last.n_quads:,} elements, largest R "
