@@ -9,6 +9,8 @@ import meshio
 import numpy as np
 import pytest
 from files.reader_seeds import grid_field, quad_mesh, triangle_field
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
 
 from sizeviz.errors import InputError
 from sizeviz.files import read_domain, read_field, read_mesh, write_field, write_mesh
@@ -64,6 +66,23 @@ def test_a_field_comes_back_bit_for_bit(tmp_path: Path, name: str, suffix: str) 
     back = read_field(write_field(tmp_path / f"f{suffix}", field))
     assert same_field(back, field)
     assert back.label == f"f{suffix}"
+
+
+NUMBERS = st.floats(1e-50, 1e50) | st.floats(0.1, 10.0)
+
+
+@pytest.mark.parametrize("suffix", sorted(set(FIELD_WRITERS) - {".npy"}))
+@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(sizes=st.lists(NUMBERS, min_size=6, max_size=6), x0=st.floats(-1e6, 1e6), dx=NUMBERS, dy=NUMBERS)
+def test_any_numbers_come_back(
+    tmp_path: Path, suffix: str, sizes: list[float], x0: float, dx: float, dy: float
+) -> None:
+    x, y = x0 + dx * np.arange(3), -dy * np.arange(2)
+    assume(len(set(x)) == 3 and 0.01 < dx / dy < 100)
+    points = np.column_stack([np.tile(x, 2), np.repeat(y, 3)])
+    triangles = np.array([[0, 4, 1], [0, 3, 4], [1, 5, 2], [1, 4, 5]], dtype=np.int32)
+    field = SizeField(BackgroundMesh(points, triangles), np.array(sizes))
+    assert same_field(read_field(write_field(tmp_path / f"f{suffix}", field)), field)
 
 
 @pytest.mark.parametrize("suffix", [".vtu", ".vtk", ".npz"])
