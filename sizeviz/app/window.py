@@ -99,7 +99,8 @@ class MainWindow(QMainWindow):
         connect_panels(self)
         connect_actions(self)
         self.set_theme(self.theme)
-        if not self.settings.restore_layout(self):
+        self._laid_out = self.settings.restore_layout(self)
+        if not self._laid_out:
             self.resize(1500, 920)
         for dock in (self.pipeline_dock, self.inspector_dock):
             dock.hide()  # the welcome page stands alone
@@ -206,6 +207,7 @@ class MainWindow(QMainWindow):
         self.readout.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.progress = Progress()
         self.statusBar().setSizeGripEnabled(False)
+        self.statusBar().setMinimumHeight(42)  # room for Cancel, so that nothing moves when a run begins
         self.statusBar().addWidget(self.readout, 1)
         self.statusBar().addPermanentWidget(self.progress)
 
@@ -215,8 +217,11 @@ class MainWindow(QMainWindow):
         """Bring panels and panes to a study."""
         if self.pages.currentWidget() is not self.board:
             self.pages.setCurrentWidget(self.board)
-            self.pipeline_dock.show()
-            self.inspector_dock.show()
+            docks = [self.pipeline_dock, self.inspector_dock]
+            for dock in docks:
+                dock.show()
+            if not self._laid_out:
+                self.resizeDocks(docks, [SIDEBAR, INSPECTOR], Qt.Orientation.Horizontal)
         self.setWindowTitle(f"{study.source.label} – sizeviz")
         self.source.show_source(study.source)
         for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):

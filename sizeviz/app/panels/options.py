@@ -75,8 +75,8 @@ class SizePanel(OptionsPanel):
         choose(self.distance, preserve.distance)
         slope = preserve.beta / preserve.alpha
         self.note.setText(
-            f"Limited: slope {limit.epsilon:.3g}, growth × {1 + limit.epsilon:.3g} an element<br>"
-            f"Preserved: α = {preserve.alpha:.3g}, slope ≤ {slope:.3g}, growth × {1 + slope:.3g}"
+            f"Limited: slope {limit.epsilon:.3g}, growth × {1 + limit.epsilon:.3g}<br>"
+            f"Preserved: α {preserve.alpha:.3g}, slope ≤ {slope:.3g}, growth × {1 + slope:.3g}"
         )
 
     def _alpha(self, value: float) -> None:

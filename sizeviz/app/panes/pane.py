@@ -62,7 +62,7 @@ class Pane(QFrame):
         for quantity, words in QUANTITIES.items():
             self.quantity.addItem(words, quantity)
         for box, width in ((self.method, 152), (self.quantity, 160)):
-            box.setMinimumWidth(90)  # headers must not make one pane wider than the other
+            box.setMinimumWidth(112)  # headers must not make one pane wider than the other
             box.setMaximumWidth(width)
             box.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.detail = QLabel()
