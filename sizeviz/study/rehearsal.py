@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def rehearsed(monitor: Monitor = SILENT) -> Study:
-    """Return the study of a valley on a small grid, run by the methods that are compared.
+    """Return the study of a valley on a small grid, run by the methods that are compared and with the guarantee.
 
     Raises
     ------
@@ -32,14 +32,15 @@ def rehearsed(monitor: Monitor = SILENT) -> Study:
         If the monitor says so.
     """
     from sizeviz.sources.source import Source
-    from sizeviz.study.pipeline import COMPARED, run
+    from sizeviz.study.pipeline import COMPARED, GUARANTEED, run
     from sizeviz.study.report import mesh_arrays
     from sizeviz.study.study import Study
 
     field = valley()
     source = Source(name="rehearsal", label="rehearsal", domain=Domain.unit_square(), field=field, reference=field)
-    study = run(Study(source), COMPARED, monitor)
-    for method in COMPARED:
+    methods = (*COMPARED, GUARANTEED)
+    study = run(Study(source), methods, monitor)
+    for method in methods:
         mesh_arrays(study, method)
     return study
 
@@ -85,9 +86,10 @@ def _play_mesh() -> None:
 
 
 def _play_smooth() -> None:
-    from sizeviz.improvement import SmoothOptions, improved
+    from sizeviz.improvement import guaranteed, tightened
 
-    improved(lattice(), Domain.unit_square(), valley(), SmoothOptions())
+    # the guarantee begins with everything that plain smoothing does
+    guaranteed(lattice(), Domain.unit_square(), tightened(valley(), valley()), valley())
 
 
 def _play_judge() -> None:
