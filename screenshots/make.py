@@ -154,14 +154,9 @@ def painting(person: Person, path: Path) -> None:
     window.controller.open_canvas(257, 0.06)
     person.wait_settled(300)
     person.key(Qt.Key.Key_B)
-    window.actions_["panes-3"].trigger()
-    window.board.panes[2].set_view(window.board.panes[2].view.with_changes(color_by="target", method="size-preserving"))
-    window.board.panes[0].set_view(window.board.panes[0].view.with_changes(method="size-preserving"))
-    window.board.panes[1].set_view(
-        window.board.panes[1].view.with_changes(color_by="target", method="gradient-limiting")
-    )
     window.paint.value.set_value(0.004)
     window.paint.radius.set_value(0.035)
+    person.rest(500)
     pane = window.board.panes[0]
     person.drag(pane, [(0.2, 0.7), (0.4, 0.85), (0.6, 0.7), (0.8, 0.8)], steps=12)
     person.wait_settled(300)
@@ -170,7 +165,6 @@ def painting(person: Person, path: Path) -> None:
     person.photograph(path)
     person.key(Qt.Key.Key_Escape)
     person.key(Qt.Key.Key_B)
-    window.actions_["panes-2"].trigger()
 
 
 def painted(person: Person, path: Path) -> None:
