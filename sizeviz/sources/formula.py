@@ -130,14 +130,15 @@ class _Parser:
         self.depth += 1
         if self.depth > DEEPEST:
             raise InputError(f"formula: it is nested more than {DEEPEST} deep; write it more simply")
-        left = self._operand()
+        first = self._operand()
+        rest: list[tuple[Callable[..., Value], Node]] = []
         while (strength := _BINDING.get(self.tokens[self.at][1], -1)) > binding:
             operator = self._next()[1]
             # a power takes powers to its right: 2**3**2 is 2**9
             right = self._expression(strength - 1 if operator == "**" else strength)
-            left = _applied(_OPERATORS[operator], left, right)
+            rest.append((_OPERATORS[operator], right))
         self.depth -= 1
-        return left
+        return _chained(first, rest) if rest else first
 
     def _operand(self) -> Node:
         kind, text, position = self._next()
@@ -191,6 +192,18 @@ class _Parser:
 def _constant(value: float) -> Node:
     number = np.float64(value)
     return lambda x, y: np.asarray(number)
+
+
+def _chained(first: Node, rest: list[tuple[Callable[..., Value], Node]]) -> Node:
+    """Return a row of operations, carried out from left to right: a long one must not nest as deep as it is long."""
+
+    def value(x: Value, y: Value) -> Value:
+        result = first(x, y)
+        for function, operand in rest:
+            result = function(result, operand(x, y))
+        return result
+
+    return value
 
 
 def _applied(function: Callable[..., Value], *arguments: Node) -> Node:

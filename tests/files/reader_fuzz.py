@@ -205,7 +205,7 @@ def with_damaged_member(data: bytes, draw: random.Random) -> bytes:
 def tried(table: str, suffix: str, data: bytes, beside: bytes | None, folder: Path) -> Outcome:
     """Read one damaged file and say what came of it."""
     reader = f"{table} {suffix}".strip()
-    began, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    began, before = time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     try:
         if table == "formula":
             read_formula(data.decode("utf-8", "replace"))
@@ -218,7 +218,7 @@ def tried(table: str, suffix: str, data: bytes, beside: bytes | None, folder: Pa
         outcome = Outcome("hang", reader, traceback.format_exc(limit=-3))
     except BaseException:
         outcome = Outcome("traceback", reader, traceback.format_exc(limit=-6))
-    took, after = time.perf_counter() - began, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    took, after = time.process_time() - began, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     if took > SECONDS:
         return Outcome("hang", reader, f"{took:.1f} s")
     if (after - before) * 1024 > MEMORY:
@@ -260,16 +260,27 @@ def worker(numbers: tuple[int, int, int, int]) -> list[tuple[int, Outcome]]:
     """Try every case of one share, each under an alarm and all under a limit of memory."""
     share, n_shares, count, seed = numbers
     limit_memory()
-    signal.signal(signal.SIGALRM, on_alarm)
+    for alarm in (signal.SIGALRM, signal.SIGPROF):
+        signal.signal(alarm, on_alarm)
     outcomes = []
     with tempfile.TemporaryDirectory() as folder:
         for number, table, suffix, data, beside in cases(count, seed):
             if number % n_shares == share:
-                signal.setitimer(signal.ITIMER_REAL, SECONDS + 1)
-                outcome = tried(table, suffix, data, beside, Path(folder))
-                signal.setitimer(signal.ITIMER_REAL, 0)
-                outcomes.append((number, outcome))
+                outcomes.append((number, timed(table, suffix, data, beside, Path(folder))))
     return outcomes
+
+
+def timed(table: str, suffix: str, data: bytes, beside: bytes | None, folder: Path) -> Outcome:
+    """Read one damaged file under two alarms: one of processor time, one for waiting that never ends."""
+    try:
+        signal.setitimer(signal.ITIMER_PROF, SECONDS + 1)
+        signal.setitimer(signal.ITIMER_REAL, 20 * SECONDS)
+        return tried(table, suffix, data, beside, folder)
+    except Hung:  # the alarm came when a library had just handed back
+        return Outcome("hang", f"{table} {suffix}".strip(), "late")
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def on_alarm(number: int, frame: FrameType | None) -> None:

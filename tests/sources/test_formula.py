@@ -70,3 +70,10 @@ def test_random_text_parses_or_is_refused_in_one_line(text):
         assert str(refusal).startswith("formula:")
     else:
         assert value.shape == (2,)
+
+
+@pytest.mark.parametrize("text", ["0.1" + " + 0.2*x" * 500, "1" + "/x*x" * 900, "x" + "**1" * 50])
+def test_a_long_row_of_operations_is_no_deep_nesting(text: str) -> None:
+    x = np.linspace(0.5, 1.0, 5)
+    value = Formula(text)(x, x)
+    assert np.allclose(value, eval(text, {"x": x}), rtol=1e-12)
