@@ -78,7 +78,7 @@ def start_bounds(bounds, block, slope_x, slope_y):
     bounds[block, LEAST] = np.inf
     bounds[block, BASE] = np.inf
     bounds[block, SLOPE_X], bounds[block, SLOPE_Y] = slope_x, slope_y
-    bounds[block, SLOPE] = math.hypot(slope_x, slope_y)
+    bounds[block, SLOPE] = math.sqrt(slope_x * slope_x + slope_y * slope_y)
 
 
 @uncounted
@@ -117,7 +117,8 @@ def _limited_on_edge(epsilon, ha, rise, length, foot, height):
     else:
         s = foot - slope * height / math.sqrt(epsilon * epsilon - slope * slope) / length
         s = min(max(s, 0.0), 1.0)
-    return ha + rise * s + epsilon * math.hypot(height, (s - foot) * length)
+    along = (s - foot) * length
+    return ha + rise * s + epsilon * math.sqrt(height * height + along * along)
 
 
 @uncounted
@@ -135,7 +136,8 @@ def _preserved_on_edge(alpha, ha, rise, length2, foot, height2):
     a = length2 - (alpha * rise) ** 2
     b = alpha * alpha * at_foot * rise
     c = (alpha * at_foot) ** 2 - height2
-    root = math.sqrt(max(b * b + a * c, 0.0))
+    # b^2 + a c without the terms that cancel, of which only rounding would be left on a steep edge
+    root = math.sqrt(max((alpha * at_foot) ** 2 * length2 - height2 * a, 0.0))
     q = b + root if b >= 0.0 else b - root
     first = _into(near, low, foot + (q / a if a != 0.0 else math.inf))
     second = _into(near, low, foot + (-c / q if q != 0.0 else math.inf))
@@ -160,7 +162,7 @@ def on_triangle(kind, coefficient, ax, ay, ha, bx, by, hb, cx, cy, hc, best):
     is not in the triangle, the minimum lies on an edge that has it on its outer side: both functions are convex.
     """
     gx, gy = plane_of(bx - ax, by - ay, hb - ha, cx - ax, cy - ay, hc - ha)
-    slope = math.hypot(gx, gy)
+    slope = math.sqrt(gx * gx + gy * gy)
     value = ha - gx * ax - gy * ay
     px, py = 0.0, 0.0
     if kind == PRESERVE:

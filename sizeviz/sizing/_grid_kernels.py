@@ -1,4 +1,4 @@
-"""Both envelopes on a regular grid: branch and bound over a pyramid of block minima, location by arithmetic."""
+"""Both envelopes at a node of a regular grid: branch and bound over a pyramid of blocks, located by arithmetic."""
 
 import numpy as np
 from numba import njit
@@ -93,20 +93,15 @@ def _bound_block(bounds, shapes, level, i, j, half_x, half_y):
             join_bounds(bounds, block, first + r * columns + s, x, y, half_x, half_y)
 
 
-@njit(nogil=True, cache=True)
-def envelope_rows(kind, coefficient, scale, grid, sizes, shapes, bounds, out, first_row, last_row):
-    """Fill rows of nodes of ``out`` with ``scale`` times the envelope."""
-    nx = int(grid[4])
-    stack = np.empty((256, 3), dtype=np.int64)
-    tested = np.empty(256)
-    found = np.zeros(2, dtype=np.int64)
-    for i in range(first_row, last_row):
-        for j in range(nx):
-            best = sizes[i * nx + j]
-            # the neighbour's minimum is nearly this node's: most blocks are then skipped at once
-            best = _on_cell(kind, coefficient, grid, sizes, i, j, found[0], found[1], best)
-            best = _search(kind, coefficient, grid, sizes, shapes, bounds, i, j, best, stack, tested, found)
-            out[i * nx + j] = scale * best
+@uncounted
+def search_from(kind, coefficient, grid, sizes, shapes, bounds, i, j, best, stack, tested, found):
+    """Return the envelope at node (i, j), given an upper bound, beginning with the cell found last.
+
+    ``found`` is left as it is where no cell is lower than the bound.
+    """
+    # the neighbour's minimum is nearly this node's: most blocks are then skipped at once
+    best = _on_cell(kind, coefficient, grid, sizes, i, j, found[0], found[1], best)
+    return _search(kind, coefficient, grid, sizes, shapes, bounds, i, j, best, stack, tested, found)
 
 
 @uncounted

@@ -27,7 +27,7 @@ def size_at(sampler, x, y, hint):
     """
     grid = sampler[0]
     if grid[4] > 0.0:
-        return _size_on_grid(grid, sampler[1], x, y), hint
+        return size_on_grid(grid, sampler[1], x, y), hint
     cells = sampler[2]
     current = hint if 0 <= hint < len(cells) else 0
     wa, wb, wc = _weights(cells, current, x, y)
@@ -46,7 +46,7 @@ def sizes_at(sampler, points, out, start, stop):
 
 
 @uncounted
-def _size_on_grid(grid, sizes, x, y):
+def size_on_grid(grid, sizes, x, y):
     nx, ny = int(grid[4]), int(grid[5])
     u = min(max((x - grid[0]) / grid[2], 0.0), nx - 1.0)
     v = min(max((y - grid[1]) / grid[3], 0.0), ny - 1.0)

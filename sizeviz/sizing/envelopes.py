@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.geometry.arrays import read_only
-from sizeviz.monitor import SILENT, Monitor
+from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sizing._envelope_kernels import LIMIT, PRESERVE
-from sizeviz.sizing._grid_kernels import block_bounds, envelope_rows
+from sizeviz.sizing._grid_kernels import block_bounds
 from sizeviz.sizing._mesh_kernels import envelope_nodes, tree_bounds
+from sizeviz.sizing._tile_kernels import TILE, envelope_corners, envelope_tiles
 from sizeviz.sizing.edges import limited_by_edges, preserved_by_edges
 from sizeviz.sizing.pyramid import pyramid
 from sizeviz.threads import run_chunks
@@ -103,29 +104,48 @@ def _envelope(
 ) -> NDArray[np.float64]:
     message = "Limiting the gradient" if kind == LIMIT else "Preserving sizes"
     monitor.step(0.0, message)
-    head, sizes, cells, boxes, children = field.sampler
-    out = np.empty(len(sizes))
+    fill = _over_grid if field.background.grid is not None else _over_triangles
+    return read_only(fill(field, kind, coefficient, scale, threads, monitor, message))
+
+
+def _over_grid(
+    field: SizeField, kind: int, coefficient: float, scale: float, threads: int | None, monitor: Monitor, message: str
+) -> NDArray[np.float64]:
+    head, sizes = field.sampler[:2]
     grid = field.background.grid
-    if grid is not None:
-        shapes = pyramid(grid)
-        bounds = block_bounds(head, sizes, shapes)
+    assert grid is not None
+    shapes = pyramid(grid)
+    bounds = block_bounds(head, sizes, shapes)
+    rows, columns = -(-grid.ny // TILE), -(-grid.nx // TILE)
+    corners, out = np.empty((rows + 1, columns + 1, 3)), np.empty(len(sizes))
 
-        def fill(start: int, stop: int) -> None:
-            envelope_rows(kind, coefficient, scale, head, sizes, shapes, bounds, out, start, stop)
+    def find_corners(start: int, stop: int) -> None:
+        envelope_corners(kind, coefficient, head, sizes, shapes, bounds, corners, start, stop)
 
-        count, chunk = grid.ny, max(1, NODES_A_CHUNK // grid.nx)
-    else:
-        bounds = tree_bounds(cells, boxes, children)
-        points, order = field.background.points, _nodes_along(field)
+    def fill_tiles(start: int, stop: int) -> None:
+        envelope_tiles(kind, coefficient, scale, head, sizes, shapes, bounds, corners, out, start, stop)
 
-        def fill(start: int, stop: int) -> None:
-            envelope_nodes(
-                kind, coefficient, scale, points, sizes, order, cells, boxes, children, bounds, out, start, stop
-            )
+    chunk = max(1, NODES_A_CHUNK // (8 * (columns + 1)))
+    first, second = SubMonitor(monitor, 0.0, 0.1), SubMonitor(monitor, 0.1, 1.0)
+    run_chunks(find_corners, rows + 1, chunk=chunk, threads=threads, monitor=first, message=message)
+    chunk = max(1, NODES_A_CHUNK // (TILE * grid.nx))
+    run_chunks(fill_tiles, rows, chunk=chunk, threads=threads, monitor=second, message=message)
+    return out
 
-        count, chunk = len(order), NODES_A_CHUNK // 4
-    run_chunks(fill, count, chunk=chunk, threads=threads, monitor=monitor, message=message)
-    return read_only(out)
+
+def _over_triangles(
+    field: SizeField, kind: int, coefficient: float, scale: float, threads: int | None, monitor: Monitor, message: str
+) -> NDArray[np.float64]:
+    _, sizes, cells, boxes, children = field.sampler
+    out = np.empty(len(sizes))
+    bounds = tree_bounds(cells, boxes, children)
+    points, order = field.background.points, _nodes_along(field)
+
+    def fill(start: int, stop: int) -> None:
+        envelope_nodes(kind, coefficient, scale, points, sizes, order, cells, boxes, children, bounds, out, start, stop)
+
+    run_chunks(fill, len(order), chunk=NODES_A_CHUNK // 4, threads=threads, monitor=monitor, message=message)
+    return out
 
 
 def _nodes_along(field: SizeField) -> NDArray[np.int64]:

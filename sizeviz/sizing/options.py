@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from sizeviz.errors import InputError
 
+LimitDistance = Literal["euclidean", "edges"]
+"""How far apart two nodes are: straight, or along background edges."""
+
 Distance = Literal["euclidean", "edges", "edges-as-printed"]
-"""How far apart two nodes are: straight, or along background edges (Algorithms 1, 2), line 18 mended or as printed."""
+"""As ``LimitDistance``; along edges Algorithms 1 and 2 have line 18 mended or as printed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,9 +28,10 @@ class LimitOptions:
     """
 
     epsilon: float = 0.5
-    distance: Distance = "euclidean"
+    distance: LimitDistance = "euclidean"
 
     def __post_init__(self) -> None:
+        _check_distance(self.distance, get_args(LimitDistance))
         if not (math.isfinite(self.epsilon) and self.epsilon > 0):
             raise InputError(f"epsilon is {self.epsilon}; the largest slope must be a number above 0, such as 0.5")
 
@@ -51,6 +55,12 @@ class PreserveOptions:
     distance: Distance = "euclidean"
 
     def __post_init__(self) -> None:
+        _check_distance(self.distance, get_args(Distance))
         for name, value, example in (("alpha", self.alpha, "2"), ("beta", self.beta, "1")):
             if not (math.isfinite(value) and value > 0):
                 raise InputError(f"{name} is {value}; it must be a number above 0, such as {example}")
+
+
+def _check_distance(distance: str, known: tuple[str, ...]) -> None:
+    if distance not in known:
+        raise InputError(f"distance {distance!r} is unknown here; choose one of {', '.join(known)}")

@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix, lil_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import Delaunay, cKDTree
 
-from sizeviz.errors import Cancelled
+from sizeviz.errors import Cancelled, InputError
 from sizeviz.sizing import (
     BackgroundMesh,
     LimitOptions,
@@ -256,3 +256,23 @@ def test_a_monitor_can_cancel_and_sees_progress_grow():
         preserved(fields.on_grid(301, 301, 14), PreserveOptions(), monitor=monitor)
     assert monitor.seen == sorted(monitor.seen)
     assert monitor.seen[-1] < 1.0
+
+
+@pytest.mark.parametrize(("nx", "ny"), [(2, 2), (3, 40), (8, 9), (9, 9), (17, 10), (33, 25)])
+@pytest.mark.parametrize("spread", [0.05, 1.5])
+def test_tiles_meet_at_every_size_of_grid(nx, ny, spread):
+    field = fields.on_grid(nx, ny, nx * ny, width=0.4, height=1.1, spread=spread)
+    other = fields.as_triangles(field)
+    # on the steepest of these fields the rounding of the triangulation's points alone makes 3e-11
+    for alpha in (0.5, 6.0):
+        options = PreserveOptions(alpha=alpha)
+        np.testing.assert_allclose(preserved(field, options).sizes, preserved(other, options).sizes, rtol=1e-9)
+        slope = LimitOptions(epsilon=1 / alpha)
+        np.testing.assert_allclose(limited(field, slope).sizes, limited(other, slope).sizes, rtol=1e-9)
+
+
+def test_distances_that_do_nothing_are_refused():
+    with pytest.raises(InputError, match="edges-as-printed"):
+        LimitOptions(distance="edges-as-printed")
+    with pytest.raises(InputError, match="choose one of"):
+        PreserveOptions(distance="manhattan")
