@@ -13,6 +13,7 @@ import numpy as np
 
 from sizeviz.errors import MeshingError
 from sizeviz.geometry import QuadMesh
+from sizeviz.meshing.checks import verify
 from sizeviz.meshing.decomposition import _split_kernels as kernels
 from sizeviz.meshing.decomposition.cuts import joined
 from sizeviz.meshing.decomposition.doublets import without_doublets
@@ -54,7 +55,8 @@ class Decomposition:
         Raises
         ------
         MeshingError
-            If the mesh would be larger than ``max_elements``, or the domain's loops cross each other.
+            If the mesh would be larger than ``max_elements``, the domain's loops cross each other, or what came of it
+            is no mesh of the domain.
         Cancelled
             If the monitor says so.
         """
@@ -71,7 +73,9 @@ class Decomposition:
         points, quads, used = without_doublets(work.points, work.quads, kept)
         curve, fixed = np.full(len(used), -1, dtype=np.int32), np.zeros(len(used), dtype=bool)
         curve[: len(edge.points)], fixed[: len(edge.points)] = edge.curve, edge.fixed
-        return QuadMesh(points, quads, curve[used], fixed[used])
+        mesh = QuadMesh(points, quads, curve[used], fixed[used])
+        verify(mesh, edge.edges, edge.bounding, edge.area)
+        return mesh
 
 
 class _Work:
