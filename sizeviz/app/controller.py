@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 
 from qtpy.QtCore import QObject, QTimer, Signal
 
-from sizeviz.app.brush.live import LiveStroke, covers_nothing
+from sizeviz.app.brush.live import LiveStroke, covers_nothing, stroke_words
 from sizeviz.app.engine import LIVE_NODES, Engine, Preview, with_field
 from sizeviz.app.inspect.locate import ElementLocator
 from sizeviz.app.jobs import Failure, Job, JobRunner
@@ -35,6 +35,9 @@ AUTO_SECONDS = 3.0
 
 MERGE_SECONDS = 1.5
 """Changes of one control that follow each other faster than this are one undo step."""
+
+PREVIEW = "preview"
+"""Title of the jobs that process a field while the brush moves."""
 
 LOG = logging.getLogger(__name__)
 
@@ -109,7 +112,7 @@ class Controller(QObject):
         self._preview_due = False
         self._batch = 0
         self.store.changed.connect(self._on_changed)
-        self.jobs.started.connect(lambda job: self.busy_changed.emit(True))
+        self.jobs.started.connect(lambda job: self.busy_changed.emit(self.is_running))
         self.jobs.idle.connect(lambda: self.busy_changed.emit(False))
         self.jobs.failed.connect(self._on_failed)
         self.jobs.progressed.connect(self._on_progress)
@@ -120,6 +123,12 @@ class Controller(QObject):
     def study(self) -> Study | None:
         """The current study."""
         return self.store.study
+
+    @property
+    def is_running(self) -> bool:
+        """Whether work is under way that a person waits for; the brush's previews are not."""
+        job = self.jobs.running
+        return job is not None and job.title != PREVIEW
 
     def displayed(self, method: str) -> Displayed:
         """Return what to show of a method now, the brush's preview included."""
@@ -289,7 +298,7 @@ class Controller(QObject):
     def _request_preview(self) -> None:
         """Ask for the processed fields of the stroke; while one answer is awaited, only the next is remembered."""
         running = self.jobs.running
-        if running is not None and running.title == "preview":
+        if running is not None and running.title == PREVIEW:
             self._preview_due = True
             return
         self._preview_due = False
@@ -306,7 +315,7 @@ class Controller(QObject):
             if self._preview_due:
                 self._later(self._request_preview)
 
-        self.jobs.submit(Job("preview", lambda monitor: self.engine.targets(field, options, monitor), show))
+        self.jobs.submit(Job(PREVIEW, lambda monitor: self.engine.targets(field, options, monitor), show))
 
     def _run_next(self, method: str) -> None:
         study = self.study
@@ -373,7 +382,7 @@ class Controller(QObject):
         self.noticed.emit(Notice("error", failure.message, f"{job.title}\n\n{failure.details}"))
 
     def _on_progress(self, fraction: float, message: str, left: float) -> None:
-        if self.jobs.running is not None and self.jobs.running.title == "preview":
+        if not self.is_running:
             return
         waiting = len(self.missing())
         if left >= 0 and waiting > 1:
@@ -381,14 +390,3 @@ class Controller(QObject):
         done = max(self._batch - waiting, 0)
         overall = (done + fraction) / (done + waiting) if waiting else fraction
         self.progressed.emit(overall, message, left)
-
-
-def stroke_words(brush: Brush) -> str:
-    """Return a stroke in words, for the history."""
-    return {
-        "set": f"set {brush.value:.3g}",
-        "multiply": f"× {brush.value:.3g}",
-        "at-most": f"at most {brush.value:.3g}",
-        "smooth": "smooth",
-        "erase": "erase",
-    }[brush.mode]

@@ -241,7 +241,7 @@ class MainWindow(QMainWindow):
 
     def show_state(self) -> None:
         """Bring undo, redo, Apply and the badges to what is possible now."""
-        stack, busy = self.controller.store.stack, self.controller.jobs.is_busy
+        stack, busy = self.controller.store.stack, self.controller.is_running
         self.actions_["undo"].setEnabled(stack.canUndo())
         self.actions_["redo"].setEnabled(stack.canRedo())
         missing = len(self.controller.missing())

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import csv
 import io
+import time
 
 import numpy as np
 import pytest
@@ -435,3 +436,21 @@ def test_the_colour_bars_editor_changes_its_pane_only(qtbot, opened) -> None:
     editor.low.setValue(2.0)  # above the upper end: shown as wrong, not applied
     assert editor.low.property("invalid") and opened.board.panes[0].bar.scale.low == 0.5
     editor.close()
+
+
+def test_a_preview_keeps_nobody_from_applying(qtbot, opened, monkeypatch) -> None:
+    opened.judge_panel.automatic.setChecked(False)
+    targets = opened.controller.engine.targets
+
+    def slowly(*given):
+        time.sleep(0.2)
+        return targets(*given)
+
+    monkeypatch.setattr(opened.controller.engine, "targets", slowly)
+    opened.actions_["paint"].trigger()
+    qtbot.mousePress(glass(opened), Qt.MouseButton.LeftButton, pos=at(opened, 0.4, 0.4))
+    assert opened.controller.jobs.is_busy and opened.progress.button.isHidden()
+    qtbot.mouseRelease(glass(opened), Qt.MouseButton.LeftButton, pos=at(opened, 0.4, 0.4))
+    assert opened.judge_panel.apply.isEnabled()
+    with qtbot.waitSignal(opened.controller.settled, timeout=5000):
+        opened.judge_panel.apply.click()

@@ -78,3 +78,14 @@ def covers_nothing(stroke: Stroke, field: SizeField) -> bool:
     if stroke.shape == "polygon" and inside_polygon(field.background.points, stroke.path).any():
         return False
     return not stroke_weights(field.background, stroke).any()
+
+
+def stroke_words(brush: Brush) -> str:
+    """Return a stroke in words, for the history."""
+    return {
+        "set": f"set {brush.value:.3g}",
+        "multiply": f"× {brush.value:.3g}",
+        "at-most": f"at most {brush.value:.3g}",
+        "smooth": "smooth",
+        "erase": "erase",
+    }[brush.mode]
