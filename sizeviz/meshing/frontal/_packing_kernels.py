@@ -2,7 +2,8 @@
 
 Accepted points propose neighbours along their frame's axes; a proposal waits in a queue by size and is refused if an
 accepted point lies nearer than ``CLOSE`` of their mean size, in the maximum norm of the frame. After Remacle et al.
-(2013), "A frontal Delaunay quad mesh generator using the L-infinity norm", DOI 10.1002/nme.4458.
+(2013), "A frontal Delaunay quad mesh generator using the L-infinity norm", DOI 10.1002/nme.4458. On plateaus of the
+field proposals move to one lattice, so that fronts that meet there fit together.
 
 ``_nrt=False``: a kernel that makes no array need not count references, which costs more than some of its calls.
 """
@@ -23,10 +24,18 @@ CLEARANCE = 0.4
 DECAY = 0.9
 PER_OCTAVE = 4
 N_BUCKETS = 1024
+PLATEAU = 1.08
+PLATEAU_WIDTH = 3.0
+NEAR_LATTICE = 0.1
+LATER = 2
+RIM, FIRST, INNER, POSTPONED = 0, 1, 2, 3
+REFUSE, ACCEPT, POSTPONE = 0, 1, 2
+STRAIGHT = 0.05
 
 X, Y, SIZE, TURN, POINT_COLUMNS = 0, 1, 2, 3, 4
 N_POINTS, N_BLOCKS, BUCKET, N_QUEUED, FREE, STATE_SIZE = 0, 1, 2, 3, 4, 5
 SCALE, LOW_X, LOW_Y, ANGLE, RATIO, LOG_FINEST = 0, 1, 2, 3, 4, 5
+NEXT, LAYER, HINT, HOME, CAME, LINK_COLUMNS = 0, 1, 2, 3, 4, 5
 
 
 @njit(nogil=True, cache=True, _nrt=False)
@@ -44,7 +53,7 @@ def _near_in_block(first, ix0, ix1, iy0, iy1, x, y, h, c, s, layer, cells, point
             while q >= 0:
                 dx, dy = points[q, X] - x, points[q, Y] - y
                 distance = max(abs(c * dx + s * dy), abs(c * dy - s * dx))
-                close = CLOSE_IN_FIRST_LAYER if layer == 1 and layers[q] == 1 else CLOSE
+                close = CLOSE_IN_FIRST_LAYER if layer == FIRST and layers[q] == FIRST else CLOSE
                 if distance < 0.5 * close * (h + points[q, SIZE]):
                     return True
                 q = chain[q]
@@ -59,7 +68,12 @@ def blocked(x, y, h, c, s, layer, setting, table, packing):
     ratio = setting[RATIO]
     low_x, low_y = x - setting[LOW_X], y - setting[LOW_Y]
     widest = abs(c) + abs(s)
-    for level in range(level_of(h / ratio), level_of(h * ratio) + 1):
+    own, low_level = level_of(h), level_of(h / ratio)
+    for k in range(low_level - 1, level_of(h * ratio) + 1):
+        # the points of the same size first: they are what blocks most proposals
+        level = own if k < low_level else k
+        if k == own:
+            continue
         per_side = 2.0**-level
         reach = 0.5 * CLOSE * (h + min(2.0 / per_side, h * ratio)) * widest
         ix0, ix1 = max(int((low_x - reach) * per_side), 0), int((low_x + reach) * per_side)
@@ -97,44 +111,82 @@ def accept(x, y, h, turn, layer, state, setting, table, packing):
 
 
 @njit(nogil=True, cache=True, _nrt=False)
-def _enqueue(x, y, h, turn, layer, hint, home, state, log_finest, waiting):
-    """Put a proposal at the end of its bucket."""
+def _enqueue(x, y, h, turn, layer, hint, home, came, state, b, waiting):
+    """Put a proposal at the end of bucket b."""
     queue, links, heads, tails = waiting
     k = state[FREE]
     if k >= 0:
-        state[FREE] = links[k, 0]
+        state[FREE] = links[k, NEXT]
     else:
         k = state[N_QUEUED]
         state[N_QUEUED] = k + 1
     queue[k, X], queue[k, Y], queue[k, SIZE], queue[k, TURN] = x, y, h, turn
-    links[k, 0], links[k, 1], links[k, 2], links[k, 3] = -1, layer, hint, home
-    b = bucket_of(h, log_finest)
+    links[k, NEXT], links[k, LAYER], links[k, HINT], links[k, HOME], links[k, CAME] = -1, layer, hint, home, came
     if heads[b] < 0:
         heads[b] = k
     else:
-        links[tails[b], 0] = k
+        links[tails[b], NEXT] = k
     tails[b] = k
     if b < state[BUCKET]:
         state[BUCKET] = b
 
 
 @njit(nogil=True, cache=True, _nrt=False)
-def propose(p, hint, home, layer, sampler, region, state, setting, packing, waiting):
-    """Propose the four neighbours of an accepted point, at the mean size of both ends."""
+def _on_lattice(x, y, setting, plateaus, k):
+    """Return the node of a plateau's lattice that is nearest to a point."""
+    c, s = math.cos(setting[ANGLE]), math.sin(setting[ANGLE])
+    dx, dy = x - plateaus[k, 3], y - plateaus[k, 4]
+    u = math.floor((c * dx + s * dy) / plateaus[k, 1] + 0.5) * plateaus[k, 1]
+    v = math.floor((c * dy - s * dx) / plateaus[k, 2] + 0.5) * plateaus[k, 2]
+    return plateaus[k, 3] + c * u - s * v, plateaus[k, 4] + s * u + c * v
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def _plateau_of(h, plateaus):
+    """Return the plateau that a size belongs to, -1 if none."""
+    for k in range(len(plateaus)):
+        if plateaus[k, 0] * (1.0 - 1e-9) <= h <= plateaus[k, 0] * PLATEAU:
+            return k
+    return -1
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def _wide_plateau(x, y, h, turn, sampler, setting, plateaus, hint):
+    """Return the plateau that a point and its surroundings belong to, -1 if none."""
+    k = _plateau_of(h, plateaus)
+    if k >= 0 and abs(turn) < STRAIGHT:
+        for i in range(4):
+            away = PLATEAU_WIDTH * h * (1.0 - 2.0 * (i & 1))
+            far, hint = size_at(sampler, x + away * (i < 2), y + away * (i >= 2), hint)
+            if setting[SCALE] * far > plateaus[k, 0] * PLATEAU:
+                return -1
+        return k
+    return -1
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def propose(p, hint, home, came, layer, sampler, region, state, setting, packing, waiting):
+    """Propose the neighbours of an accepted point, but the one it came from, at the mean size of both ends."""
     points = packing[0]
     x, y, h, turn = points[p, X], points[p, Y], points[p, SIZE], points[p, TURN]
     angle = setting[ANGLE] + turn
     c, s = math.cos(angle), math.sin(angle)
     scale = setting[SCALE]
-    for _ in range(4):
-        far, hint = size_at(sampler, x + h * c, y + h * s, hint)
-        slope = min(max((scale * far - h) / h, -0.9), 0.9)
-        step = h / (1.0 - 0.5 * slope)
-        qx, qy = x + step * c, y + step * s
-        size, hint = size_at(sampler, qx, qy, hint)
-        inside, home = within(region, qx, qy, CLEARANCE * scale * size, home)
-        if inside:
-            _enqueue(qx, qy, scale * size, DECAY * turn, layer, hint, home, state, setting[LOG_FINEST], waiting)
+    for k in range(4):
+        if k != came:
+            size, hint = size_at(sampler, x + h * c, y + h * s, hint)
+            size *= scale
+            step = h
+            if size != h:
+                step = h / (1.0 - 0.5 * min(max((size - h) / h, -0.9), 0.9))
+                size, hint = size_at(sampler, x + step * c, y + step * s, hint)
+                size *= scale
+            qx, qy = x + step * c, y + step * s
+            inside, home = within(region, qx, qy, CLEARANCE * size, home)
+            if inside:
+                back = (k + 2) & 3
+                b = bucket_of(size, setting[LOG_FINEST])
+                _enqueue(qx, qy, size, DECAY * turn, layer, hint, home, back, state, b, waiting)
         c, s = -s, c
 
 
@@ -143,11 +195,11 @@ def begin(rim, sizes, turns, sampler, region, state, setting, table, packing, wa
     """Accept the nodes of the outline, then let each propose its neighbours."""
     state[BUCKET] = N_BUCKETS
     for i in range(len(rim)):
-        accept(rim[i, 0], rim[i, 1], sizes[i], turns[i], 0, state, setting, table, packing)
+        accept(rim[i, 0], rim[i, 1], sizes[i], turns[i], RIM, state, setting, table, packing)
     hint, home = 0, 0
     for i in range(len(rim)):
         _, home = within(region, rim[i, 0], rim[i, 1], 0.0, home)
-        propose(i, hint, home, 1, sampler, region, state, setting, packing, waiting)
+        propose(i, hint, home, -1, FIRST, sampler, region, state, setting, packing, waiting)
     state[BUCKET] = 0
 
 
@@ -160,7 +212,7 @@ def _next(state, waiting, seeds):
     while b < N_BUCKETS:
         k = heads[b]
         if k >= 0:
-            heads[b] = links[k, 0]
+            heads[b] = links[k, NEXT]
             state[BUCKET] = b
             return k
         if seed_at[b] < seed_bucket[b + 1]:
@@ -173,7 +225,29 @@ def _next(state, waiting, seeds):
 
 
 @njit(nogil=True, cache=True, _nrt=False)
-def advance(most, sampler, region, state, setting, table, packing, waiting, seeds):
+def _try(x, y, h, turn, layer, sampler, hint, setting, table, packing, region, plateaus, home):
+    """Return what to do with a proposal, ``ACCEPT``, ``REFUSE`` or ``POSTPONE``, and where its point would be.
+
+    On a plateau the lattice comes first; what does not fit into it waits until the lattice is complete.
+    """
+    angle = setting[ANGLE] + turn
+    c, s = math.cos(angle), math.sin(angle)
+    k = -1
+    if layer == INNER and len(plateaus) > 0:
+        k = _wide_plateau(x, y, h, turn, sampler, setting, plateaus, hint)
+    if k < 0:
+        return (REFUSE if blocked(x, y, h, c, s, layer, setting, table, packing) else ACCEPT), x, y
+    lx, ly = _on_lattice(x, y, setting, plateaus, k)
+    inside, home = within(region, lx, ly, CLEARANCE * h, home)
+    if inside and not blocked(lx, ly, h, c, s, layer, setting, table, packing):
+        return ACCEPT, lx, ly
+    if max(abs(lx - x), abs(ly - y)) < NEAR_LATTICE * h or blocked(x, y, h, c, s, layer, setting, table, packing):
+        return REFUSE, x, y
+    return POSTPONE, x, y
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def advance(most, sampler, region, state, setting, table, packing, waiting, seeds, plateaus):
     """Accept up to ``most`` more points; return whether nothing is left to try."""
     queue, links = waiting[0], waiting[1]
     rows = seeds[0]
@@ -184,14 +258,17 @@ def advance(most, sampler, region, state, setting, table, packing, waiting, seed
             return True
         if k >= 0:
             x, y, h, turn = queue[k, X], queue[k, Y], queue[k, SIZE], queue[k, TURN]
-            layer, hint, home = links[k, 1], links[k, 2], links[k, 3]
-            links[k, 0] = state[FREE]
+            layer, hint, home, came = links[k, LAYER], links[k, HINT], links[k, HOME], links[k, CAME]
+            links[k, NEXT] = state[FREE]
             state[FREE] = k
         else:
             x, y, h, turn = rows[-2 - k, 0], rows[-2 - k, 1], rows[-2 - k, 2], 0.0
-            layer, hint, home = 2, 0, 0
-        angle = setting[ANGLE] + turn
-        if not blocked(x, y, h, math.cos(angle), math.sin(angle), layer, setting, table, packing):
+            layer, hint, home, came = INNER, 0, 0, -1
+        fate, x, y = _try(x, y, h, turn, layer, sampler, hint, setting, table, packing, region, plateaus, home)
+        if fate == POSTPONE:
+            b = min(bucket_of(h, setting[LOG_FINEST]) + LATER, N_BUCKETS - 1)
+            _enqueue(x, y, h, turn, POSTPONED, hint, home, came, state, b, waiting)
+        elif fate == ACCEPT:
             p = accept(x, y, h, turn, layer, state, setting, table, packing)
-            propose(p, hint, home, 2, sampler, region, state, setting, packing, waiting)
+            propose(p, hint, home, came, INNER, sampler, region, state, setting, packing, waiting)
     return False

@@ -16,6 +16,8 @@ POOR = 0.6
 POOR_WEIGHT = 4.0
 FORBIDDEN = 20.0
 DAMPING = 0.5
+SQUARE = 1e-9
+STRAIGHT = -0.8660254037844386
 
 
 @njit(nogil=True, cache=True, _nrt=False)
@@ -75,8 +77,59 @@ def pair_costs(start, stop, points, triangles, twin, cost):
                     points[p, 0], points[p, 1], points[a, 0], points[a, 1],
                     points[q, 0], points[q, 1], points[b, 0], points[b, 1],
                 )  # fmt: skip
-                cost[e] = 1.0 - quality + POOR_WEIGHT * max(0.0, POOR - quality) + _ripple(e)
+                cost[e] = 0.0
+                if quality < 1.0 - SQUARE:
+                    cost[e] = 1.0 - quality + POOR_WEIGHT * max(0.0, POOR - quality) + _ripple(e)
                 cost[g] = cost[e]
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def _flattens(e, g, end, points, triangles, locked):
+    """Whether joining across an edge would leave a straight stretch of the outline, at one end, to one element."""
+    t, i, u, j = e // 3, e % 3, g // 3, g % 3
+    # opposite the corner that the end is not: the edge from the end to the triangle's apex
+    k, m = (i + 3 - end) % 3, (j + end) % 3
+    if not (locked[t, k] and locked[u, m]):
+        return False
+    a, p, q = triangles[t, (i + end) % 3], triangles[t, i], triangles[u, j]
+    ux, uy = points[p, 0] - points[a, 0], points[p, 1] - points[a, 1]
+    vx, vy = points[q, 0] - points[a, 0], points[q, 1] - points[a, 1]
+    bend = vx * uy - vy * ux if end == 1 else ux * vy - uy * vx
+    return bend <= 0.0 or ux * vx + uy * vy < STRAIGHT * np.sqrt((ux * ux + uy * uy) * (vx * vx + vy * vy))
+
+
+@njit(nogil=True, cache=True, _nrt=True)
+def convex(points, triangles, locked, twin):
+    """Return the twins without those whose joining would bend an element around a node of the outline."""
+    out = twin.copy()
+    for e in range(len(twin)):
+        g = twin[e]
+        if g > e:
+            for end in (1, 2):
+                if _flattens(e, g, end, points, triangles, locked):
+                    out[e] = out[g] = -1
+    return out
+
+
+@njit(nogil=True, cache=True, _nrt=True)
+def squares_kept(twin, cost):
+    """Return the twins without those that would break up a square: lattices stay whole as long as that is possible."""
+    out = twin.copy()
+    for e in range(len(twin)):
+        if twin[e] > e and cost[e] == 0.0:
+            for f in range(3 * (e // 3), 3 * (e // 3) + 3):
+                _cut(f, e, out)
+            for f in range(3 * (twin[e] // 3), 3 * (twin[e] // 3) + 3):
+                _cut(f, twin[e], out)
+    return out
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def _cut(f, kept, twin):
+    """Remove a twin unless it is the one to be kept."""
+    if f != kept and twin[f] >= 0:
+        twin[twin[f]] = -1
+        twin[f] = -1
 
 
 @njit(nogil=True, cache=True, _nrt=False)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -81,3 +83,31 @@ def largest_slope(points, triangles, sizes):
             gx, gy = du * vy - dv * uy, dv * ux - du * vx
             steepest = max(steepest, (gx * gx + gy * gy) / (det * det))
     return np.sqrt(steepest)
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def flat_sizes(points, triangles, sizes, values, counts):
+    """Add up, for each size that whole triangles have, the elements that those triangles ask for; return the rest's.
+
+    ``values`` and ``counts`` are a hash table, a power of two long and 0 to begin with; a size that finds no place
+    in it is left out.
+    """
+    mask = len(values) - 1
+    rest = 0.0
+    for t in range(len(triangles)):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        h = sizes[a]
+        area = (points[b, 0] - points[a, 0]) * (points[c, 1] - points[a, 1])
+        area -= (points[b, 1] - points[a, 1]) * (points[c, 0] - points[a, 0])
+        asked = 0.5 * abs(area) / (h * h)
+        if sizes[b] != h or sizes[c] != h:
+            rest += asked
+            continue
+        k = (int(math.frexp(h)[0] * 9007199254740992.0) * 2654435761 >> 20) & mask
+        for _ in range(8):
+            if values[k] == h or values[k] == 0.0:
+                values[k] = h
+                counts[k] += asked
+                break
+            k = (k + 1) & mask
+    return rest

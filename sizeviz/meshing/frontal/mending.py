@@ -51,8 +51,19 @@ def mended(
     single : (S,) int32
         Those left over, usually none.
     """
-    quads, single = paired(mesh, monitor)
-    if not len(single) or len(mesh.triangles) > LARGEST:
+    quads, single = paired(mesh, monitor, strict=True)
+    mesh, quads, single = _with_flips(mesh, quads, single, monitor, strict=True)
+    if len(single):
+        quads, single = paired(mesh, monitor)
+        mesh, quads, single = _with_flips(mesh, quads, single, monitor, strict=False)
+    return mesh, quads, single
+
+
+def _with_flips(
+    mesh: Triangulation, quads: NDArray[np.int32], single: NDArray[np.int32], monitor: Monitor, *, strict: bool
+) -> tuple[Triangulation, NDArray[np.int32], NDArray[np.int32]]:
+    """Exchange diagonals as long as that leaves fewer triangles single."""
+    if len(mesh.triangles) > LARGEST:
         return mesh, quads, single
     tried: set[tuple[int, int]] = set()
     progress = True
@@ -67,7 +78,7 @@ def mended(
             if other is None:
                 continue
             monitor.step(0.95, "joining triangles")
-            other_quads, other_single = paired(other)
+            other_quads, other_single = paired(other, strict=strict)
             if len(other_single) < len(single):
                 mesh, quads, single, progress = other, other_quads, other_single, True
                 break

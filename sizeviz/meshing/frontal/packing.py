@@ -11,6 +11,7 @@ from sizeviz.errors import MeshingError
 from sizeviz.meshing.frontal import _hash_kernels as hashing
 from sizeviz.meshing.frontal import _packing_kernels as kernels
 from sizeviz.meshing.frontal import _seed_kernels as seeding
+from sizeviz.meshing.frontal.boundary import SLACK
 from sizeviz.monitor import SILENT, Monitor
 
 if TYPE_CHECKING:
@@ -26,6 +27,13 @@ CHUNK = 20_000
 
 STEEPEST = 1.5
 """Slopes above this are treated as this: sizes that jump cannot be followed by a packing."""
+
+
+PLATEAU_SHARE = 0.01
+"""A size that this share of all elements has, on flat ground, is a plateau with a lattice of its own."""
+
+JITTER = 1e-7
+"""Inner points move by up to this share of their size: points on one circle would cost exact arithmetic later."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +65,37 @@ def steepest(size: SizeField) -> float:
     """Return the largest slope of the field, no more than ``STEEPEST``."""
     background = size.background
     return float(min(seeding.largest_slope(background.points, background.triangles, size.sizes), STEEPEST))
+
+
+def plateaus(region: RegionArrays, size: SizeField, scale: float) -> NDArray[np.float64]:
+    """Return the sizes that the field keeps to over wide areas, smallest first, and the lattices for them.
+
+    Parameters
+    ----------
+    region : tuple
+        ``region_arrays`` of the domain; in a rectangle the lattices fit its sides.
+    size : SizeField
+        Sizes.
+    scale : float
+        Element size asked for relative to the field.
+
+    Returns
+    -------
+    (P, 5) float64
+        Element size; spacing along both axes of the frame; origin.
+    """
+    background = size.background
+    values, counts = np.zeros(1024), np.zeros(1024)
+    rest = seeding.flat_sizes(background.points, background.triangles, size.sizes, values, counts)
+    kept = scale * np.sort(values[counts > PLATEAU_SHARE * (counts.sum() + rest)])
+    box, out = region[0], np.empty((len(kept), 5))
+    out[:, 0] = out[:, 1] = out[:, 2] = kept
+    out[:, 3:] = box[:2]
+    if not len(region[2]):
+        for k in range(2):
+            side = box[2 + k] - box[k]
+            out[:, 1 + k] = side / np.maximum(np.ceil(side / kept - SLACK), 1.0)
+    return out
 
 
 def seeded(region: RegionArrays, size: SizeField, options: MeshOptions, monitor: Monitor = SILENT) -> Seeds:
@@ -128,7 +167,10 @@ def packed(
     expected = 1.3 * seeds.asked + len(rim.points)
     while not front.advanced():
         monitor.step(min(front.n_points / expected, 1.0), "placing nodes")
-    return front.points[: front.n_points, :2].copy()
+    nodes = front.points[: front.n_points, :2].copy()
+    inner = front.points[len(rim.points) : front.n_points, kernels.SIZE, None]
+    nodes[len(rim.points) :] += inner * np.random.default_rng(options.seed).uniform(-JITTER, JITTER, (len(inner), 2))
+    return nodes
 
 
 class _Front:
@@ -151,6 +193,7 @@ class _Front:
         corner = region[0][:2] - 1e-3 * float((region[0][2:] - region[0][:2]).max())
         self.setting = np.array([options.scale, *corner, frame_angle(rim), ratio, log_finest])
         self.sampler, self.region = size.sampler, region
+        self.plateaus = plateaus(region, size, options.scale)
         rows, starts = seeding.by_bucket(seeds.rows, log_finest)
         self.seeds = (rows, starts, starts[:-1].copy())
         capacity = int(1.3 * seeds.asked) + len(rim.points) + 2 * CHUNK
@@ -158,7 +201,7 @@ class _Front:
         self.state[kernels.FREE] = -1
         self.points = np.empty((capacity, kernels.POINT_COLUMNS))
         self.chain, self.layers = np.empty(capacity, dtype=np.int32), np.empty(capacity, dtype=np.uint8)
-        self.queue, self.links = np.empty((capacity, 4)), np.empty((capacity, 4), dtype=np.int32)
+        self.queue, self.links = np.empty((capacity, 4)), np.empty((capacity, kernels.LINK_COLUMNS), dtype=np.int32)
         self.heads = np.full(kernels.N_BUCKETS, -1, dtype=np.int32)
         self.tails = np.full(kernels.N_BUCKETS, -1, dtype=np.int32)
         self.keys, self.values = hashing.rehashed(np.empty(0, np.uint64), np.empty(0, np.int32), 1 << 12)
@@ -177,7 +220,7 @@ class _Front:
     def advanced(self) -> bool:
         """Accept about ``CHUNK`` more points; return whether the domain is full."""
         self._reserve(CHUNK)
-        return bool(kernels.advance(CHUNK, *self._arrays(), self.seeds))
+        return bool(kernels.advance(CHUNK, *self._arrays(), self.seeds, self.plateaus))
 
     def _arrays(self) -> tuple[object, ...]:
         table = (self.keys, self.values, self.cells)

@@ -22,7 +22,9 @@ LONGEST = 20_000
 """How many triangles the search for one alternating path through blossoms may touch."""
 
 
-def paired(mesh: Triangulation, monitor: Monitor = SILENT) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def paired(
+    mesh: Triangulation, monitor: Monitor = SILENT, *, strict: bool = False
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Join neighbouring triangles to quadrilaterals of high quality, across edges that are not locked.
 
     Parameters
@@ -31,6 +33,8 @@ def paired(mesh: Triangulation, monitor: Monitor = SILENT) -> tuple[NDArray[np.i
         Triangles.
     monitor : Monitor
         Progress and cancel.
+    strict : bool
+        Whether to leave triangles single rather than bend an element around a node of a straight outline.
 
     Returns
     -------
@@ -44,17 +48,21 @@ def paired(mesh: Triangulation, monitor: Monitor = SILENT) -> tuple[NDArray[np.i
     Bayati, Shah, Sharma (2008), DOI 10.1109/TIT.2007.915695; Edmonds (1965), DOI 10.4153/CJM-1965-045-4.
     """
     n = len(mesh.triangles)
-    twin = kernels.joinable(mesh.neighbours, mesh.locked)
+    every = kernels.joinable(mesh.neighbours, mesh.locked)
     cost = np.empty(3 * n)
-    kernels.pair_costs(0, n, mesh.points, mesh.triangles, twin, cost)
+    kernels.pair_costs(0, n, mesh.points, mesh.triangles, every, cost)
+    convex = kernels.convex(mesh.points, mesh.triangles, mesh.locked, every)
+    twin = kernels.squares_kept(convex, cost)
     inbox = np.where(twin < 0, kernels.FORBIDDEN, 0.0)
     for k in range(SWEEPS):
         kernels.sweep(k % 2 == 0, twin, cost, inbox)
         monitor.step(0.8 * (k + 1) / SWEEPS, "joining triangles")
     mate = np.full(n, -1, dtype=np.int32)
     kernels.joined_by_belief(twin, cost, inbox, mate)
-    _augment(twin, mate, monitor)
-    return kernels.quads_of(mesh.triangles, twin, mate), np.flatnonzero(mate < 0).astype(np.int32)
+    for allowed in (twin, convex) if strict else (twin, convex, every):
+        if (mate < 0).any():
+            _augment(allowed, mate, monitor)
+    return kernels.quads_of(mesh.triangles, every, mate), np.flatnonzero(mate < 0).astype(np.int32)
 
 
 def _augment(twin: NDArray[np.int32], mate: NDArray[np.int32], monitor: Monitor) -> None:
