@@ -46,7 +46,7 @@ def adapt(
     options: PipelineOptions | None = None,
     process: ProcessOptions | None = None,
 ) -> None:
-    """Mesh again and again, each mesh the background of the next, until one keeps the field.
+    """Mesh again and again, each mesh the background of the next, until one keeps the field; plain unless --guarantee.
 
     Writes mesh-000.vtu (uniform), mesh-001.vtu, ..., evolution.json, and evolution.png and .svg, the largest R of each
     iteration. A process that was stopped is taken up where it was left.
@@ -58,7 +58,7 @@ def adapt(
 
     options, process = options or PipelineOptions(), process or ProcessOptions()
     asked = AdaptOptions(
-        method=method,
+        method=_method_run(method, options),
         study=study_options(options, comparable=True),
         sampling=process.background,
         cells=process.cells,
@@ -70,7 +70,25 @@ def adapt(
     with progress() as monitor:
         evolution = adapted(loaded(source, options), asked, out, monitor)
     save_evolution(evolution, out)
-    _print(evolution, method)
+    _print(evolution, asked.method)
+
+
+def _method_run(method: MethodName, options: PipelineOptions) -> str:
+    """Return the method, or the guaranteed one where that was typed.
+
+    Raises
+    ------
+    InputError
+        If the guarantee is asked for where it cannot be given.
+    """
+    from sizeviz.errors import InputError
+    from sizeviz.study import GUARANTEED
+
+    if not options.guarantee:
+        return method
+    if method != "size-preserving" or not options.smooth:
+        raise InputError("--guarantee goes with --method size-preserving and --smooth; leave it out")
+    return GUARANTEED
 
 
 def _print(evolution: Evolution, method: str) -> None:
