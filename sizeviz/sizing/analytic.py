@@ -59,11 +59,14 @@ class AnalyticSize:
         Approximates it.
     label : str
         What to call it in messages and pictures.
+    error : float, optional
+        Largest error of ``field`` that was found, relative to the formula; None where it was not looked for.
     """
 
     function: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
     field: SizeField
     label: str = "formula"
+    error: float | None = None
 
     def at(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the formula's value at each of ``points`` (N, 2)."""

@@ -36,7 +36,7 @@ SECTIONS = 40
 """Golden sections that find the worst place on an edge, to 1e-9 of its length."""
 
 ROUNDS = 60
-"""Refinements after which what remains is accepted as a jump."""
+"""Refinements after which what remains is taken for a jump; the error reached is then told."""
 
 MOST_NODES = 2_000_000
 """Nodes of a background that are worth building."""
@@ -77,11 +77,17 @@ def approximated(
     points = _first_nodes(domain, seeds)
     sizes = _checked(function, points, label)
     triangles = delaunay(points)
-    seen, by_length = np.empty(0, dtype=np.int64), False
-    for turn in range(ROUNDS):
-        monitor.step(turn / ROUNDS, "Approximating the formula")
-        new, seen = _wanted(function, points, sizes, triangles, seen, by_length, label)
-        if not len(new) and by_length:
+    seen, by_length, error = np.empty(0, dtype=np.int64), False, 0.0
+    for turn in range(ROUNDS + 1):
+        monitor.step(turn / (ROUNDS + 1), "Approximating the formula")
+        new, good, left, right = _on_edges(function, points, sizes, triangles, seen, by_length, label)
+        seen, error = np.sort(np.concatenate([seen, good])), max(error, right)
+        if not len(new):
+            new, left, right = _within(function, points, sizes, triangles, label)
+        if turn == ROUNDS:
+            error = max(error, left, right)
+        if turn == ROUNDS or (not len(new) and by_length):
+            error = max(error, right)
             break
         if not len(new):  # kinks are followed by edges before long edges are halved: fewer nodes fall beside them
             seen, by_length = np.empty(0, dtype=np.int64), True
@@ -93,7 +99,14 @@ def approximated(
         triangles = delaunay(points)
     monitor.step(1.0)
     field = SizeField(BackgroundMesh(points, triangles), sizes, label)
-    return AnalyticSize(function, field, label)
+    return AnalyticSize(function, field, label, float(error))
+
+
+def shortfall(size: AnalyticSize) -> str:
+    """Return what to add to a label where the field is further from its formula than it should be, else nothing."""
+    if size.error is None or size.error <= TOLERANCE:
+        return ""
+    return f" (its background is off by up to {100.0 * size.error:.3g} %: does the formula jump?)"
 
 
 def _first_nodes(domain: Domain, seeds: NDArray[np.float64] | None) -> NDArray[np.float64]:
@@ -126,7 +139,13 @@ def _checked(function: Function, points: NDArray[np.float64], label: str) -> NDA
     return sizes
 
 
-def _wanted(
+def _distinct(keys: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return sorted keys, each once; several times as fast as numpy's hashing."""
+    keys = np.sort(keys)
+    return keys[np.concatenate([[True], keys[1:] != keys[:-1]])]
+
+
+def _on_edges(
     function: Function,
     points: NDArray[np.float64],
     sizes: NDArray[np.float64],
@@ -134,27 +153,35 @@ def _wanted(
     seen: NDArray[np.int64],
     by_length: bool,
     label: str,
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the nodes that the edges and triangles not yet found good ask for, and all edges now known to be good."""
-    pairs = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
-    keys = np.unique(pairs[:, 0].astype(np.int64) << 32 | pairs[:, 1])
-    fresh = keys[~np.isin(keys, seen, assume_unique=True)]
-    a, b = fresh >> 32, fresh & 0xFFFFFFFF
+) -> tuple[NDArray[np.float64], NDArray[np.int64], float, float]:
+    """Return what the edges that are not among those ``seen``, sorted, ask for.
+
+    Returns
+    -------
+    new : (N, 2) float64
+        Nodes on edges that are not good.
+    good : (G,) int64
+        Edges found good.
+    left, right : float
+        Largest relative error on those that are not good, and on those that are.
+    """
+    a, b = triangles.astype(np.int64), np.roll(triangles, -1, axis=1).astype(np.int64)
+    keys = _distinct((np.minimum(a, b) << 32 | np.maximum(a, b)).ravel())
+    if len(seen):
+        keys = keys[seen[np.minimum(np.searchsorted(seen, keys), len(seen) - 1)] != keys]
+    a, b = keys >> 32, keys & 0xFFFFFFFF
     span = points[b] - points[a]
-    at = points[a][:, None] + STATIONS[:, None] * span[:, None]
-    true = _checked(function, at, label)
-    linear = sizes[a][:, None] + STATIONS * (sizes[b] - sizes[a])[:, None]
-    error = np.abs(linear - true) / true
+    true = _checked(function, points[a][:, None] + STATIONS[:, None] * span[:, None], label)
+    error = np.abs(sizes[a][:, None] + STATIONS * (sizes[b] - sizes[a])[:, None] - true) / true
     worst = error.argmax(axis=1)
-    rows = np.arange(len(fresh))
-    off = error[rows, worst] > TOLERANCE
+    most = error[np.arange(len(keys)), worst]
+    off = most > TOLERANCE
     least = np.minimum(true.min(axis=1), np.minimum(sizes[a], sizes[b]))
-    long = by_length & (np.hypot(span[:, 0], span[:, 1]) > LONGEST_EDGE * least)
-    share = np.full(len(fresh), 0.5)
+    wanted = off | (by_length & (np.hypot(span[:, 0], span[:, 1]) > LONGEST_EDGE * least))
+    share = np.full(len(keys), 0.5)
     share[off] = _worst_places(function, points[a[off]], span[off], sizes[a[off]], sizes[b[off]], STATIONS[worst[off]])
-    new = (points[a] + share[:, None] * span)[off | long]
-    inner = _within(function, points, sizes, triangles, label)
-    return np.unique(np.vstack([new, inner]), axis=0), np.concatenate([seen, fresh[~(off | long)]])
+    new = (points[a] + share[:, None] * span)[wanted]
+    return new, keys[~wanted], float(most[off].max(initial=0.0)), float(most[~wanted].max(initial=0.0))
 
 
 def _worst_places(
@@ -189,8 +216,14 @@ def _within(
     sizes: NDArray[np.float64],
     triangles: NDArray[np.int32],
     label: str,
-) -> NDArray[np.float64]:
-    """Return the centroids of the triangles where the field is off by more than the tolerance."""
-    centres = points[triangles].mean(axis=1)
+) -> tuple[NDArray[np.float64], float, float]:
+    """Return the centroids of the triangles where the field is off by more than the tolerance, and the largest errors.
+
+    The first error is that of those triangles, the second that of the others.
+    """
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    centres = (points[a] + points[b] + points[c]) / 3.0
     true = _checked(function, centres, label)
-    return centres[np.abs(sizes[triangles].mean(axis=1) - true) > TOLERANCE * true]
+    error = np.abs((sizes[a] + sizes[b] + sizes[c]) / 3.0 - true) / true
+    off = error > TOLERANCE
+    return centres[off], float(error[off].max(initial=0.0)), float(error[~off].max(initial=0.0))

@@ -14,7 +14,7 @@ from sizeviz.files.outlines import domain_of
 from sizeviz.geometry import Domain
 from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sources.analytic_examples import ring, valley
-from sizeviz.sources.approximation import approximated
+from sizeviz.sources.approximation import approximated, shortfall
 from sizeviz.sources.formula import Formula
 from sizeviz.sources.phantom import phantom
 from sizeviz.sources.picture_examples import coast, mri, terrain
@@ -150,8 +150,8 @@ def _unknown(spec: str) -> str:
 def _from_formula(text: str, domain: Domain, monitor: Monitor) -> Source:
     formula = Formula(text.strip())
     size = approximated(formula, domain, "formula", monitor=monitor)
-    provenance = {"kind": "formula", "formula": formula.text}
-    return Source("formula", formula.text, domain, size.field, size, None, provenance)
+    provenance = {"kind": "formula", "formula": formula.text, "error": size.error}
+    return Source("formula", formula.text + shortfall(size), domain, size.field, size, None, provenance)
 
 
 def _over(source: Source, domain: Domain, monitor: Monitor) -> Source:
@@ -162,7 +162,8 @@ def _over(source: Source, domain: Domain, monitor: Monitor) -> Source:
             source.name, source.label, domain, source.field, source.reference, source.image, source.provenance
         )
     size = approximated(Formula(str(formula)), domain, source.name, monitor=monitor)
-    return Source(source.name, source.label, domain, size.field, size, source.image, source.provenance)
+    provenance = {**source.provenance, "error": size.error}
+    return Source(source.name, source.label + shortfall(size), domain, size.field, size, source.image, provenance)
 
 
 def _from_picture(path: Path, image: Image, domain: Domain | None, image_size: str) -> Source:
