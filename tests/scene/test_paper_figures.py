@@ -40,7 +40,7 @@ def drawn(tmp_path_factory):
         evolution = adapted(slope(), AdaptOptions(method=method, study=study, cells=4, iterations=2), place)
         ring.append(Adaptation("decomposition", method, evolution, place))
     done = run(Study(slope(), study), COMPARED)
-    images = {name: [ImageRun(done.source, "decomposition", dict(done.runs))] for name in ("first", "second")}
+    images = {name: [ImageRun(done.source, "decomposition", dict(done.runs), {})] for name in ("first", "second")}
     norms = save_figures(line_example(), ring, images, folder)
     save_evolution(ring[0].evolution, folder)
     return folder, ring, images, norms

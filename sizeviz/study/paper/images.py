@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -9,7 +11,7 @@ from typing import TYPE_CHECKING
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sources import load
 from sizeviz.study.paper.together import together
-from sizeviz.study.pipeline import COMPARED, run
+from sizeviz.study.pipeline import COMPARED, processed, run
 from sizeviz.study.study import MethodRun, Study
 
 if TYPE_CHECKING:
@@ -33,11 +35,14 @@ class ImageRun:
         What made the meshes.
     runs : dict of str to MethodRun
         By method; and gradient limiting at equal count under ``EQUAL_COUNT``.
+    field_seconds : dict of str to float
+        By method, how long its field takes where nothing else runs beside it: the best of three.
     """
 
     source: Source
     mesher: str
     runs: dict[str, MethodRun]
+    field_seconds: dict[str, float]
 
 
 def image_runs(name: str, options: PaperOptions, monitor: Monitor = SILENT) -> list[ImageRun]:
@@ -51,14 +56,28 @@ def image_runs(name: str, options: PaperOptions, monitor: Monitor = SILENT) -> l
         If the monitor says so.
     """
     source = load(name)
-    return together([partial(_by_mesher, source, mesher, options.study(mesher)) for mesher in options.meshers], monitor)
+    alone = replace(options.study(options.meshers[0]), threads=options.threads)
+    seconds = {method: _field_seconds(Study(source, alone), method) for method in COMPARED}
+    jobs = [partial(_by_mesher, source, mesher, options.study(mesher), seconds) for mesher in options.meshers]
+    return together(jobs, monitor)
 
 
-def _by_mesher(source: Source, mesher: str, asked: StudyOptions, monitor: Monitor = SILENT) -> ImageRun:
+def _field_seconds(study: Study, method: str) -> float:
+    best = math.inf
+    for _ in range(3):
+        began = time.perf_counter()
+        processed(study, method)
+        best = min(best, time.perf_counter() - began)
+    return best
+
+
+def _by_mesher(
+    source: Source, mesher: str, asked: StudyOptions, seconds: dict[str, float], monitor: Monitor = SILENT
+) -> ImageRun:
     study = run(Study(source, asked), COMPARED, SubMonitor(monitor, 0.0, 0.6))
     runs = {method: study.runs[method] for method in COMPARED}
     runs[EQUAL_COUNT] = _equal_count(source, asked, runs, SubMonitor(monitor, 0.6, 1.0))
-    return ImageRun(source, mesher, runs)
+    return ImageRun(source, mesher, runs, seconds)
 
 
 def _equal_count(source: Source, asked: StudyOptions, runs: dict[str, MethodRun], monitor: Monitor) -> MethodRun:

@@ -96,7 +96,7 @@ def _image_part(found: Sequence[ImageRun], norms: Norms, *, numbered: bool) -> l
 
 
 def _field_words(found: Sequence[ImageRun]) -> str:
-    seconds = min(one.runs["size-preserving"].seconds["field"] for one in found)
+    seconds = found[0].field_seconds["size-preserving"]
     published = PUBLISHED["table-2"]["size-preserving"][SECONDS]
     nodes = len(found[0].source.field.sizes)
     return (

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from sizeviz.study.evolution import Evolution
     from sizeviz.study.paper.adaptation import Adaptation
     from sizeviz.study.paper.images import ImageRun
-    from sizeviz.study.study import MethodRun
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +93,7 @@ def ring_table(found: Sequence[Adaptation]) -> Table:
 
 def image_table(found: Sequence[ImageRun], name: str = "table-2") -> Table:
     """Return Table 2, or the same of another image."""
-    ours = {(method, one.mesher): _run_column(one.runs[method]) for one in found for method in COMPARED}
+    ours = {(method, one.mesher): _run_column(one, method) for one in found for method in COMPARED}
     return _table(name, f"Statistics for the meshes generated for {found[0].source.label}", "table-2", ours)
 
 
@@ -130,9 +129,10 @@ def _last_row(evolution: Evolution) -> dict[str, float]:
     return dict(zip(ROWS, numbers, strict=True))
 
 
-def _run_column(run: MethodRun) -> dict[str, float]:
-    assert run.report is not None
-    return {**run.report.table(), SECONDS: run.seconds["field"]}
+def _run_column(one: ImageRun, method: str) -> dict[str, float]:
+    report = one.runs[method].report
+    assert report is not None
+    return {**report.table(), SECONDS: one.field_seconds[method]}
 
 
 def _escaped(text: str) -> str:
