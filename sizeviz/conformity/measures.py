@@ -21,9 +21,9 @@ MEASURES: tuple[Measure, ...] = get_args(Measure)
 
 def edge_lengths(mesh: QuadMesh) -> NDArray[np.float64]:
     """Return the length of each element's four edges, from corner k to k + 1, ``(Q, 4)``, in model units."""
-    corners = mesh.points[mesh.quads]
-    edges = np.roll(corners, -1, axis=1) - corners
-    return np.hypot(edges[:, :, 0], edges[:, :, 1])
+    x, y = (mesh.points[:, k][mesh.quads] for k in range(2))
+    x, y = np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y
+    return np.sqrt(x * x + y * y)
 
 
 def element_sizes(mesh: QuadMesh, measure: Measure = "mean-edge") -> NDArray[np.float64]:
@@ -34,13 +34,31 @@ def element_sizes(mesh: QuadMesh, measure: Measure = "mean-edge") -> NDArray[np.
     InputError
         If the measure has another name than those of ``MEASURES``.
     """
-    if measure == "mean-edge":
-        return edge_lengths(mesh).mean(axis=1)
-    if measure == "max-edge":
-        return edge_lengths(mesh).max(axis=1)
     if measure == "sqrt-area":
         return np.sqrt(np.maximum(mesh.areas, 0.0))
-    raise InputError(f"measure {measure!r} is unknown; choose one of {', '.join(MEASURES)}")
+    if measure not in MEASURES:
+        raise InputError(f"measure {measure!r} is unknown; choose one of {', '.join(MEASURES)}")
+    return _mean_edge(edge_lengths(mesh)) if measure == "mean-edge" else _max_edge(edge_lengths(mesh))
+
+
+def all_element_sizes(mesh: QuadMesh) -> dict[Measure, NDArray[np.float64]]:
+    """Return the size of each element by every measure, ``(Q,)`` each, in model units."""
+    lengths = edge_lengths(mesh)
+    return {
+        "mean-edge": _mean_edge(lengths),
+        "sqrt-area": element_sizes(mesh, "sqrt-area"),
+        "max-edge": _max_edge(lengths),
+    }
+
+
+def _mean_edge(lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+    a, b, c, d = lengths.T  # numpy's own sums over four columns take several times as long
+    return 0.25 * ((a + b) + (c + d))
+
+
+def _max_edge(lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+    a, b, c, d = lengths.T
+    return np.maximum(np.maximum(a, b), np.maximum(c, d))
 
 
 def shape_quality(mesh: QuadMesh) -> NDArray[np.float64]:
@@ -50,15 +68,16 @@ def shape_quality(mesh: QuadMesh) -> NDArray[np.float64]:
     its determinant (Knupp, Algebraic mesh quality metrics, SIAM J. Sci. Comput. 23, 2001, DOI
     10.1137/S1064827500371499).
     """
-    corners = mesh.points[mesh.quads]
-    ahead = np.roll(corners, -1, axis=1) - corners
-    behind = np.roll(corners, 1, axis=1) - corners
-    sigma = ahead[:, :, 0] * behind[:, :, 1] - ahead[:, :, 1] * behind[:, :, 0]
-    norm2 = (ahead**2).sum(axis=2) + (behind**2).sum(axis=2)
+    x, y = (mesh.points[:, k][mesh.quads] for k in range(2))
+    x, y = np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y  # from corner k to k + 1
+    before_x, before_y = np.roll(x, 1, axis=1), np.roll(y, 1, axis=1)
+    sigma = before_x * y - before_y * x
+    norm2 = x * x + y * y
+    norm2 = norm2 + np.roll(norm2, 1, axis=1)
     valid = (sigma > 0.0).all(axis=1)
-    distortion = norm2[valid] / (2.0 * sigma[valid])
-    quality = np.zeros(len(corners))
-    quality[valid] = 4.0 / distortion.sum(axis=1)
+    a, b, c, d = (norm2[valid] / sigma[valid]).T
+    quality = np.zeros(len(sigma))
+    quality[valid] = 8.0 / ((a + b) + (c + d))
     return quality
 
 

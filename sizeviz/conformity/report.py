@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from sizeviz.conformity.measures import MEASURES, Measure, element_sizes, irregular_fraction, shape_quality
+from sizeviz.conformity.measures import MEASURES, Measure, all_element_sizes, irregular_fraction, shape_quality
 from sizeviz.errors import InputError
 from sizeviz.geometry.arrays import read_only
 from sizeviz.monitor import SILENT, Monitor
@@ -213,7 +213,7 @@ def judged(
     least = reference.min_over(mesh.points, mesh.quads, threads, monitor)
     return MeshReport(
         least=read_only(least),
-        sizes={measure: read_only(element_sizes(mesh, measure)) for measure in MEASURES},
+        sizes={measure: read_only(sizes) for measure, sizes in all_element_sizes(mesh).items()},
         quality=read_only(shape_quality(mesh)),
         n_nodes=mesh.n_points,
         irregular=irregular_fraction(mesh),
