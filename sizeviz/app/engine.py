@@ -73,9 +73,10 @@ class PipelineEngine:
 
     def load(self, spec: str, monitor: Monitor = SILENT) -> Source:
         """Return an example, a file or ``expr:FORMULA`` as a source."""
+        rest = prepared(monitor)
         from sizeviz.sources import load
 
-        return load(spec, monitor=monitor)
+        return load(spec, monitor=rest)
 
     def canvas(self, nodes: int, size: float) -> Source:
         """Return a blank canvas: one size everywhere on the unit square, ``nodes`` along each side."""
@@ -99,12 +100,14 @@ class PipelineEngine:
 
     def run(self, study: Study, method: str, monitor: Monitor = SILENT) -> Study:
         """Return the study with one method complete, as the command line would run it."""
+        rest = prepared(monitor)
         from sizeviz.study import run
 
-        return run(study, (method,), monitor)
+        return run(study, (method,), rest)
 
     def targets(self, field: SizeField, options: StudyOptions, monitor: Monitor = SILENT) -> dict[str, SizeField]:
         """Return the limited and the preserved field, by method."""
+        monitor = prepared(monitor)
         from sizeviz.sizing import limited, preserved
 
         asked = field if options.beta == 1.0 else field.with_sizes(options.beta * field.sizes)
@@ -119,6 +122,25 @@ class PipelineEngine:
         from sizeviz.study import StudyOptions
 
         return StudyOptions().with_comparable_slope()
+
+
+def prepared(monitor: Monitor) -> Monitor:
+    """Compile the kernels if this machine has not yet; return what is left of the monitor for the work itself.
+
+    The compiler holds the interpreter for seconds, so it works in processes of its own: on the worker of the window it
+    would freeze the window.
+
+    Raises
+    ------
+    Cancelled
+        If the monitor says so; what was compiled until then is kept.
+    """
+    from sizeviz.compiled import are_compiled, compile_kernels
+
+    if are_compiled():
+        return monitor
+    compile_kernels(SubMonitor(monitor, 0.0, 0.8))
+    return SubMonitor(monitor, 0.8, 1.0)
 
 
 def title_of(name: str) -> str:
