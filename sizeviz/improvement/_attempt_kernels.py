@@ -135,17 +135,18 @@ def aim_elements(region, n, patch, aims):
 
 
 @compiled
-def relax(nodes, n, n_core, patch, aims, law, rails, star, hope):
+def relax(nodes, n, n_core, patch, aims, law, rails, star, hope, patient):
     """Sweep the cavity, then the cavity and its ring, until the nodes settle or too much of the decrease is missing.
 
-    ``hope`` is the decrease that the operation still needs. Returns whether it stayed within reach.
+    ``hope`` is the decrease that the operation still needs. Returns whether it stayed within reach, which one that
+    is ``patient`` does not ask.
     """
     for s in range(CORE_SWEEPS + SWEEPS):
         step = 0.0
         for i in range(n_core if s < CORE_SWEEPS else n):
             step += node_step(nodes[i], patch, aims[2], aims[4], law, rails, star)
         hope -= step
-        if s >= CORE_SWEEPS - 1 and hope > max(REACHABLE / 5.0 ** (s - CORE_SWEEPS + 1), 3.0 * step):
+        if not patient and s >= CORE_SWEEPS - 1 and hope > max(REACHABLE / 5.0 ** (s - CORE_SWEEPS + 1), 3.0 * step):
             return False
         if s >= CORE_SWEEPS and step < 0.01:
             return True
@@ -209,8 +210,11 @@ def restore_places(nodes, n, region, n_region, patch, rails, aims, kept):
 def better(before, after, change, law):
     """Judge (distortion, sigma, quality, stretch) after an operation against before; law holds the guards.
 
-    ``law`` is (objective, worth of one unit of valence energy, lowest quality, largest squared stretch).
+    ``law`` is (objective, worth of one unit of valence energy, lowest quality, largest squared stretch, quality that
+    a rescue demands or 0).
     """
+    if law[4] > 0.0:
+        return after[2] >= law[4] and after[3] <= max(before[3], law[3])
     if after[1] <= 0.0 and before[1] > 0.0:
         return False
     if after[2] < min(before[2], law[2]) or after[3] > max(before[3], law[3]):
@@ -269,7 +273,7 @@ def relaxed_better(before, change, n_core, n, n_new, patch, marks, aims, rails, 
         return False
     raw = measure(region, n_after, patch, aims[2], law[0])
     hope = raw[0] - before[0] + law[1] * change
-    if not relax(nodes, n, n_core, patch, aims, (law[0], 0.0), rails, star, hope):
+    if not relax(nodes, n, n_core, patch, aims, (law[0], 0.0), rails, star, hope, law[4] > 0.0):
         return False
     aim_elements(region, n_after, patch, aims)
     if not better(before, measure(region, n_after, patch, aims[2], law[0]), change, law):

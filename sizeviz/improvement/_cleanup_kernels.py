@@ -7,6 +7,8 @@ import numpy as np
 from sizeviz.improvement._attempt_kernels import attempt
 from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates
 from sizeviz.improvement._jit import allocating, compiled
+from sizeviz.improvement._operation_kernels import NONE, PILLOW
+from sizeviz.improvement._worst_kernels import quad_quality
 
 MOST_VISITS = 12
 """How often one node is taken from the queue in one pass, so that a pass ends."""
@@ -30,15 +32,38 @@ def seed_queue(first, last, patch, topo, marks, queue, queued, visits, tops):
             enqueue(v, queue, queued, tops)
 
 
+@compiled
+def worst_around(v, patch):
+    """Return the lowest shape quality around a node and the code of the corner it is found at."""
+    _, quads, ring, count = patch
+    worst, code = 2.0, ring[v, 0]
+    for j in range(count[v]):
+        quality = quad_quality(ring[v, j] >> 2, patch[0], quads)
+        if quality < worst:
+            worst, code = quality, ring[v, j]
+    return worst, code
+
+
+@compiled
+def wanted(v, patch, topo, marks, demand):
+    """Say whether a node is worth a visit: irregular, or in a rescue beside an element below the quality demanded."""
+    if patch[3][v] == 0 or marks[0][v] != marks[1]:
+        return False
+    if demand > 0.0:
+        return worst_around(v, patch)[0] < demand
+    return patch[3][v] != topo[0][v]
+
+
 @allocating
 def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room, tops, queue, queued, visits):
     """Visit up to ``budget`` queued nodes and apply at each the first operation that stands; return how many did.
 
-    ``limit`` is the largest change of valence energy considered, ``tries`` how many operations a visit may test.
+    ``limit`` is the largest change of valence energy considered, ``tries`` how many operations a visit may test, fewer
+    than ``MOST_CANDIDATES``.
     """
     found = np.empty((MOST_CANDIDATES, 4), np.int64)
     done = 0
-    count, nodes = patch[3], room[6]
+    nodes = room[6]
     for _ in range(budget):
         if tops[4] == 0:
             break
@@ -46,10 +71,14 @@ def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room,
         tops[3] = (tops[3] + 1) % len(queue)
         tops[4] -= 1
         queued[v] = False
-        if count[v] == 0 or marks[0][v] != marks[1] or count[v] == topo[0][v] or visits[v] >= MOST_VISITS:
+        if visits[v] >= MOST_VISITS or not wanted(v, patch, topo, marks, law[4]):
             continue
         visits[v] += 1
         n = min(candidates(v, patch, topo, room[3], limit, found), tries)
+        if law[4] > 0.0:
+            # what is left when nothing else helps: room around the worst element
+            found[n, 0], found[n, 1], found[n, 2], found[n, 3] = PILLOW, worst_around(v, patch)[1], NONE, NONE
+            n += 1
         for i in range(n):
             near = attempt(
                 found[i, 0], found[i, 1], found[i, 2], found[i, 3],
@@ -59,7 +88,7 @@ def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room,
                 done += 1
                 for j in range(near):
                     w = nodes[j]
-                    if count[w] > 0 and count[w] != topo[0][w]:
+                    if wanted(w, patch, topo, marks, law[4]):
                         enqueue(w, queue, queued, tops)
                 break
     return done

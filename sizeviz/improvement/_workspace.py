@@ -163,6 +163,23 @@ class Workspace:
         law = (self.objective, self.weight)
         return float(_sweep_kernels.sweep_nodes(nodes, self.patch, self.inv, self.bound, law, self.rails))
 
+    def below(self, quality: float) -> NDArray[np.int64]:
+        """Return the elements whose shape quality is ``quality`` or less: at 0 those that are not convex."""
+        rows = np.arange(len(self.quads))
+        found = np.empty(len(self.quads))
+        _worst_kernels.qualities(rows, self.xy, self.quads, found)
+        return np.flatnonzero(found <= quality)
+
+    def sweep_around(self, rows: NDArray[np.int64], rings: int = 3, count: int = 6) -> None:
+        """Move the nodes within some rings of elements ``count`` times."""
+        near = np.zeros(len(self.xy), dtype=bool)
+        near[self.quads[rows]] = True
+        for _ in range(rings):
+            near[self.quads[near[self.quads].any(axis=1)]] = True
+        nodes = np.flatnonzero(near)
+        for _ in range(count):
+            self.sweep_some(nodes)
+
     def lift(self, floor: float) -> int:
         """Move the nodes of elements whose quality is below ``floor``; return how many remain below."""
         self.aim()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sizeviz.improvement._workspace import Workspace
-from sizeviz.improvement.cleanup import clean_fast, clean_wide
+from sizeviz.improvement.cleanup import clean_fast, clean_wide, rescue
 from sizeviz.improvement.options import SmoothOptions
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from sizeviz.geometry.domain import Domain
     from sizeviz.geometry.quadmesh import QuadMesh
     from sizeviz.sizing import SizeField
+
+RESCUED = 0.3
+"""Quality below which an element's connectivity is changed whatever the valences become."""
 
 
 def improved(
@@ -57,4 +60,6 @@ def improve(mesh: QuadMesh, domain: Domain, size: SizeField, options: SmoothOpti
         clean_wide(work, options.rounds, SubMonitor(monitor, 0.3, 0.85))
     work.sweep(options.sweeps, SubMonitor(monitor, 0.85, 1.0))
     work.lift(options.floor)
+    if options.cleanup:
+        rescue(work, RESCUED)
     return work

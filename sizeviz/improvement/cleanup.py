@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sizeviz.improvement import _cleanup_kernels, _mesh_kernels
+from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES
 from sizeviz.improvement._cavity_kernels import MOST_CORE, MOST_ELEMENTS
+from sizeviz.improvement._operation_kernels import DEGENERATE
 from sizeviz.improvement._star_kernels import STAR_COLUMNS
 from sizeviz.improvement._workspace import Workspace, longer
 from sizeviz.improvement.options import SmoothOptions
@@ -37,6 +39,8 @@ WORTH = 0.5
 LOWEST_QUALITY = 0.55
 LARGEST_STRETCH = 2.2
 """Longest edge over target size that an operation may leave, unless it was larger before."""
+RESCUES = ((0.6, 2.2), (0.4, 3.0), (0.2, 4.0), (0.05, 8.0), (1e-3, 1e3))
+"""Quality demanded of a rescue and the longest edge over target size it may leave, ever more modest."""
 BUDGET = 256
 """Nodes visited between two looks at the monitor."""
 
@@ -76,12 +80,14 @@ class Cleaner:
         Whose arrays are changed in place, and lengthened.
     shift : bool
         Whether the cuts between tiles lie half a tile further on.
+    whole : bool
+        Whether one tile holds everything.
     """
 
-    def __init__(self, work: Workspace, shift: bool = False) -> None:
+    def __init__(self, work: Workspace, shift: bool = False, whole: bool = False) -> None:
         self.work = work
         n = len(work.xy)
-        tile_of = (np.arange(n, dtype=np.int64) + (TILE // 2 if shift and n > TILE else 0)) // TILE
+        tile_of = (np.arange(n, dtype=np.int64) + (TILE // 2 if shift and n > TILE else 0)) // (n if whole else TILE)
         n_tiles = int(tile_of[-1]) + 1
         spare = SPARE + TILE // 16
         self.patch = work.patch
@@ -138,13 +144,30 @@ class Cleaner:
         return self.zone, tile.number, *self.seen
 
     def _visit(self, tile: _Tile, limit: int, tries: int) -> int:
+        law = (self.work.objective, WORTH, LOWEST_QUALITY, LARGEST_STRETCH**2, 0.0)
+        return self._clean(tile, limit, tries, law)
+
+    def _clean(self, tile: _Tile, limit: int, tries: int, law: tuple[Any, ...]) -> int:
         work = self.work
         aims = (work.size.sampler, work.sizes, work.inv, work.hint, work.bound, work.scale**2)
-        law = (work.objective, WORTH, LOWEST_QUALITY, LARGEST_STRETCH**2)
         return _cleanup_kernels.clean_tile(
             BUDGET, limit, tries, self.patch, self.topo, self._marks(tile), aims, work.rails, law,
             tile.room, tile.tops, tile.queue, self.queued, self.visits,
         )  # fmt: skip
+
+    def rescue(self, nodes: NDArray[np.integer], demand: float, stretch: float) -> int:
+        """Try every operation at some nodes until one leaves no quality below ``demand``; return how many stood.
+
+        ``stretch`` is the longest edge over the target size that it may leave. The cleaner must be ``whole``.
+        """
+        tile = self.tiles[0]
+        tile.queue[: len(nodes)], self.queued[nodes] = nodes, True
+        tile.tops[3:5] = 0, len(nodes)
+        law = (self.work.objective, 0.0, 0.0, stretch**2, demand)
+        done = 0
+        while tile.tops[4] > 0:
+            done += self._clean(tile, DEGENERATE // 2, MOST_CANDIDATES - 1, law)
+        return done
 
 
 def cleaned(
@@ -190,6 +213,24 @@ def clean_fast(work: Workspace, monitor: Monitor = SILENT) -> None:
     cleaner.run(-3, 4, SubMonitor(monitor, 0.0, 0.3))
     cleaner.run(-1, 6, SubMonitor(monitor, 0.3, 1.0))
     work.compact()
+
+
+def rescue(work: Workspace, below: float) -> int:
+    """Change the connectivity around elements whose quality lies below ``below``, inverted ones above all.
+
+    Untangling moves nodes only; an inner node with two elements, or a flat boundary node with one, leaves an element
+    that no move makes valid. Returns how many elements are still inverted.
+    """
+    for demand, stretch in RESCUES:
+        rows = work.below(min(below, demand))
+        if not len(rows):
+            break
+        done = Cleaner(work, whole=True).rescue(np.unique(work.quads[rows]), demand, stretch)
+        work.compact()
+        if done:
+            work.sweep_around(work.below(below))
+            work.lift(work.options.floor)
+    return len(work.below(0.0))
 
 
 def clean_wide(work: Workspace, rounds: int, monitor: Monitor = SILENT) -> None:
