@@ -219,7 +219,10 @@ class _Sheet:
             dot = size * 0.36
             middle = bottom + round(size * 1.15)
             canvas.dot(left + dot, middle, dot, color if spec.passed is not None else canvas.faint)
-            canvas.text(left + size * 1.15, middle, spec.verdict, size, anchor="lm")
+            indent = size * 1.15
+            lines, small = wrapped(spec.verdict, layout.pane[0] - indent, size)
+            for k, line in enumerate(lines):
+                canvas.text(left + indent, middle + 1.2 * small * k, line, small, anchor="lm")
         box = layout.close_up_box(row, 0)
         bottom = layout.pane_box(row, 0)[3]
         where = f"close-up at ({self.close.x:.3g}, {self.close.y:.3g})"
@@ -234,6 +237,18 @@ class _Sheet:
         right, bottom = round(box[0] + x + half), round(box[1] + y + half)
         self.canvas.rectangle((left - 2, top - 2, right + 2, bottom + 2), self.canvas.ground, 2)
         self.canvas.rectangle((left, top, right, bottom), self.canvas.ink, 2)
+
+
+def wrapped(words: str, width: float, size: int) -> tuple[list[str], int]:
+    """Return words on at most two lines, broken after commas, in type that is as large as the width permits."""
+    parts = words.split(", ")
+    for small in range(size, 1, -1):
+        whole = [words, *(", ".join(parts[:k]) + ",\n" + ", ".join(parts[k:]) for k in range(len(parts) - 1, 0, -1))]
+        for candidate in whole:
+            lines = candidate.split("\n")
+            if all(text_width(line, small) <= width for line in lines):
+                return lines, small
+    return [words], 1
 
 
 def _shared_scale(rows: Sequence[Subject], view: ViewState) -> ColorScale:

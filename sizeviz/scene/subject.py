@@ -54,6 +54,8 @@ class Subject:
         Its outline is drawn.
     image : Image, optional
         What the interpolation error is measured on.
+    promise : {'mean-edge', 'sqrt-area', 'max-edge'}, optional
+        The measure by which the method promises every element to be correct, if it promises anything.
     """
 
     title: str = ""
@@ -64,6 +66,7 @@ class Subject:
     target: SizeField | None = None
     domain: Domain | None = None
     image: Image | None = None
+    promise: Measure | None = None
 
     def field(self, quantity: Quantity) -> SizeField | None:
         """Return the field behind a field quantity, None where it does not exist yet."""
@@ -96,6 +99,7 @@ def subject_of(study: Study, method: str) -> Subject:
         target=None if run is None else run.target,
         domain=study.source.domain,
         image=study.source.image,
+        promise="max-edge" if method == "guaranteed" else None,
     )
 
 

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.scene.scale import CORRECT
+from sizeviz.scene.subject import MEASURE_TITLES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from sizeviz.conformity import Measure
     from sizeviz.scene.subject import Subject
     from sizeviz.scene.view import ViewState
 
@@ -27,17 +29,28 @@ def verdict(subject: Subject, view: ViewState) -> tuple[str, bool | None]:
         what = "no image to measure against" if view.color_by == "error" else "not judged yet"
         return what, None
     if view.color_by == "ratio":
+        if subject.promise is not None and subject.report is not None:
+            return ratio_words(subject.report.ratios[subject.promise], subject.promise)
         return ratio_words(values)
     if view.color_by == "quality":
         return quality_words(values)
     return f"{_short(values.min())} to {_short(values.max())}, mean {_short(values.mean())}", None
 
 
-def ratio_words(ratios: NDArray[np.float64]) -> tuple[str, bool]:
-    """Return such as "99.98 % correct, worst R = 1.03 at element 8123", and whether every element passes."""
+def ratio_words(ratios: NDArray[np.float64], promise: Measure | None = None) -> tuple[str, bool]:
+    """Return such as "99.98 % correct, worst R = 1.03 at element 8123", and whether every element passes.
+
+    Parameters
+    ----------
+    ratios : (Q,) float64
+        R of every element.
+    promise : {'mean-edge', 'sqrt-area', 'max-edge'}, optional
+        The measure that R was formed with, named where it may be another than the one on show.
+    """
     correct = int(np.count_nonzero(ratios <= CORRECT))
     worst = int(np.argmax(ratios))
-    words = f"{percent(correct, len(ratios))} correct, worst R = {_ratio(ratios[worst])} at element {worst}"
+    by = "" if promise is None else f" by the {MEASURE_TITLES[promise]}"
+    words = f"{percent(correct, len(ratios))} correct{by}, worst R = {_ratio(ratios[worst])} at element {worst}"
     return words, correct == len(ratios)
 
 

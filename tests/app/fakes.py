@@ -17,7 +17,7 @@ from sizeviz.sizing import BackgroundMesh, SizeField
 from sizeviz.sources.source import Source
 from sizeviz.study import MethodRun, Study, StudyOptions
 
-SCALES = {"none": 1.4, "gradient-limiting": 1.1, "size-preserving": 0.8}
+SCALES = {"none": 1.4, "gradient-limiting": 1.1, "size-preserving": 0.8, "guaranteed": 2.5}
 
 
 def fake_source(name: str = "ring", nodes: int = 65, floor: float = 0.02) -> Source:

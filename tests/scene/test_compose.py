@@ -6,6 +6,8 @@ from scene.fakes import fake_report, grid_field, lattice, subject
 
 from sizeviz.geometry import Domain
 from sizeviz.scene.camera import Camera2D
+from sizeviz.scene.canvas import text_width
+from sizeviz.scene.comparison import wrapped
 from sizeviz.scene.compose import compose, outline_segments, scale_for
 from sizeviz.scene.spec import CellLayer, ImageLayer, LineLayer, TriangleLayer
 from sizeviz.scene.subject import Subject
@@ -126,3 +128,21 @@ def test_the_camera_maps_pixels_there_and_back_and_zooms_about_the_cursor() -> N
     assert camera.zoomed(3.0, x, y).to_pixel(x, y, 300, 200) == pytest.approx((37.0, 81.0))
     moved = camera.panned(10.0, -5.0, 200)
     assert moved.to_pixel(x, y, 300, 200) == pytest.approx((47.0, 76.0))
+
+
+def test_the_guaranteed_method_is_judged_by_what_it_promises() -> None:
+    mesh = lattice(6, 0.05)
+    report = fake_report(mesh, np.full(36, 0.198))
+    assert report.ratios["mean-edge"].max() < 1.0 < report.ratios["max-edge"].max()
+    promised = compose(Subject(mesh=mesh, report=report, promise="max-edge"), ViewState())
+    assert "correct by the longest edge, worst R = 1." in promised.verdict and promised.passed is False
+    plain = compose(Subject(mesh=mesh, report=report), ViewState())
+    assert plain.verdict.startswith("100 % correct, worst R = 0.") and plain.passed is True
+
+
+@pytest.mark.parametrize("width", [150.0, 330.0, 480.0, 900.0])
+def test_words_under_a_pane_are_broken_to_its_width(width: float) -> None:
+    words = "4 inverted, mean quality 0.922, worst 0.000 at element 8670"
+    lines, size = wrapped(words, width, 25)
+    assert " ".join(lines) == words and len(lines) <= 2 and size <= 25
+    assert all(text_width(line, size) <= width for line in lines)

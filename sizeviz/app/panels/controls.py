@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QSignalBlocker, Qt, Signal
+from qtpy.QtGui import QPainter
 from qtpy.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
@@ -22,6 +23,8 @@ from qtpy.QtWidgets import (
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from qtpy.QtGui import QPaintEvent
 
 SLIDER_STEPS = 400
 
@@ -138,6 +141,27 @@ class LogNumber(QWidget):
         with QSignalBlocker(self.spin):
             self.spin.setValue(value)
         self.changed.emit(value)
+
+
+class ElidedLabel(QLabel):
+    """A line of words that ends in an ellipsis where there is no room for all of it; ``text`` is still the whole."""
+
+    def __init__(self, words: str = "", parent: QWidget | None = None) -> None:
+        super().__init__(words, parent)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+
+    @property
+    def shown(self) -> str:
+        """The words as they are drawn."""
+        room = self.contentsRect().width()
+        return str(self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room))
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw what fits, in the style's colour."""
+        painter = QPainter(self)
+        middle = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        painter.drawText(self.contentsRect(), middle, self.shown)
 
 
 def number(value: float, low: float, high: float, decimals: int = 3) -> QDoubleSpinBox:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from qtpy.QtCore import QSignalBlocker, Signal
@@ -13,6 +14,10 @@ from sizeviz.scene.subject import MEASURE_TITLES
 
 if TYPE_CHECKING:
     from sizeviz.study import StudyOptions
+
+
+MESHERS = ("frontal", "decomposition", "gmsh")
+"""The generators' names; the generators themselves are not imported, for the window is there before numba is."""
 
 
 class OptionsPanel(Form):
@@ -106,8 +111,9 @@ class SizePanel(OptionsPanel):
 class MeshPanel(OptionsPanel):
     """The mesher."""
 
-    def __init__(self, meshers: tuple[str, ...] = ("frontal",), parent: QWidget | None = None) -> None:
+    def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        meshers = [name for name in MESHERS if name != "gmsh" or find_spec("gmsh") is not None]
         self.mesher = choice([(name, name) for name in meshers])
         self.scale = number(0.87, 0.1, 4.0, 3)
         self.preset = choice([("direct", "direct"), ("fast: split in four", "fast")])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import QPoint, Qt, Signal
 from qtpy.QtWidgets import QComboBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
+from sizeviz.app.panels.controls import ElidedLabel
 from sizeviz.app.panes.colorbar import ColorBar, ColorBarEditor
 from sizeviz.app.panes.surface import Surface
 from sizeviz.scene.compose import compose
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 EDGE_PIXELS = 7.0
 """Element edges are drawn once elements in view are wider than this."""
 
-OFFERED = ("none", "gradient-limiting", "size-preserving")
+OFFERED = tuple(METHOD_TITLES)
 """Methods that a pane can be set to."""
 
 
@@ -61,23 +62,20 @@ class Pane(QFrame):
             self.method.addItem(METHOD_TITLES[name], name)
         for quantity, words in QUANTITIES.items():
             self.quantity.addItem(words, quantity)
-        for box, width in ((self.method, 152), (self.quantity, 160)):
-            box.setMinimumWidth(112)  # headers must not make one pane wider than the other
-            box.setMaximumWidth(width)
-            box.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.detail = QLabel()
+        for box in (self.method, self.quantity):
+            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+            box.setMinimumWidth(100)  # headers must not make one pane wider than the other
+            box.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self.detail = ElidedLabel()
         self.detail.setProperty("role", "muted")
-        self.detail.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.badge = QLabel("stale")
         self.badge.setObjectName("badge")
         self.badge.setToolTip("An older result; the study has changed since. Apply runs it again.")
         self.badge.hide()
         self.fit_button = QToolButton()
         self.fit_button.setText("Fit")
-        self.verdict = QLabel()
+        self.verdict = ElidedLabel()
         self.verdict.setObjectName("verdict")
-        self.verdict.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.verdict.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self._edges: Callable[[], bool] = lambda: False
         self._lay_out()
         self._name()
@@ -148,14 +146,16 @@ class Pane(QFrame):
 
     def _lay_out(self) -> None:
         head = QHBoxLayout()
-        head.setContentsMargins(8, 7, 8, 5)
+        head.setContentsMargins(8, 7, 8, 3)
         head.setSpacing(6)
-        for widget in (self.method, self.quantity):
-            head.addWidget(widget, 3)
-        head.addSpacing(4)
-        head.addWidget(self.detail, 1)
+        head.addWidget(self.method)
+        head.addWidget(self.quantity)
+        head.addStretch(1)
         head.addWidget(self.badge)
         head.addWidget(self.fit_button)
+        under = QHBoxLayout()
+        under.setContentsMargins(14, 0, 14, 5)
+        under.addWidget(self.detail)
         foot = QVBoxLayout()
         foot.setContentsMargins(0, 4, 0, 6)
         foot.setSpacing(2)
@@ -168,6 +168,7 @@ class Pane(QFrame):
         column.setContentsMargins(1, 1, 1, 1)
         column.setSpacing(0)
         column.addLayout(head)
+        column.addLayout(under)
         column.addWidget(self.surface, 1)
         column.addLayout(foot)
 
