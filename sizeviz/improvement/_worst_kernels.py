@@ -26,8 +26,11 @@ def corner_ratio(ax, ay, bx, by):
 
 
 @compiled
-def star_quality(star, m, x, y):
-    """Return the worst shape quality around a node at (x, y) and the largest edge^2 over target^2 there."""
+def star_quality(star, m, x, y, share):
+    """Return the worst shape quality around a node at (x, y) and the largest edge^2 there, over what is allowed.
+
+    Allowed is target^2 / ``share``, and the limit of the element where it has one.
+    """
     worst, longest = 1.0, 0.0
     for j in range(m):
         nx, ny, ox, oy, px, py = star[j, 0], star[j, 1], star[j, 2], star[j, 3], star[j, 4], star[j, 5]
@@ -37,23 +40,23 @@ def star_quality(star, m, x, y):
         total += corner_ratio(x - px, y - py, ox - px, oy - py)
         worst = min(worst, 8.0 / total)
         edge = max((nx - x) ** 2 + (ny - y) ** 2, (px - x) ** 2 + (py - y) ** 2)
-        longest = max(longest, edge * star[j, 6])
+        longest = max(longest, edge * max(share * star[j, 6], star[j, 7]))
     return worst, longest
 
 
 @compiled
-def lift_free(v, xy, star, m, limit):
+def lift_free(v, xy, star, m, share):
     """Search the eight directions, halving the step, for a better place of an inner node."""
     x, y = xy[v, 0], xy[v, 1]
-    best, longest = star_quality(star, m, x, y)
-    limit = max(limit, longest)
+    best, longest = star_quality(star, m, x, y, share)
+    limit = max(1.0, longest)
     step = COARSEST / math.sqrt(star[0, 6])
     for _ in range(HALVINGS):
         px, py = x, y
         for k in range(DIRECTIONS):
             angle = 2.0 * math.pi * k / DIRECTIONS
             tx, ty = x + step * math.cos(angle), y + step * math.sin(angle)
-            worst, longest = star_quality(star, m, tx, ty)
+            worst, longest = star_quality(star, m, tx, ty, share)
             if worst > best and longest <= limit:
                 best, px, py = worst, tx, ty
         if px == x and py == y:
@@ -63,17 +66,17 @@ def lift_free(v, xy, star, m, limit):
 
 
 @compiled
-def lift_sliding(v, xy, star, m, limit, curves, c, station):
+def lift_sliding(v, xy, star, m, share, curves, c, station):
     """Search both ways along its curve, halving the step, for a better place of a boundary node."""
-    best, longest = star_quality(star, m, xy[v, 0], xy[v, 1])
-    limit = max(limit, longest)
+    best, longest = star_quality(star, m, xy[v, 0], xy[v, 1], share)
+    limit = max(1.0, longest)
     step = COARSEST / math.sqrt(star[0, 6])
     for _ in range(HALVINGS):
         moved = False
         for sign in (-1.0, 1.0):
             there = curve_shift(curves, c, station[v], sign * step)
             x, y, _, _ = curve_frame(curves, c, there)
-            worst, longest = star_quality(star, m, x, y)
+            worst, longest = star_quality(star, m, x, y, share)
             if worst > best and longest <= limit:
                 best, moved = worst, True
                 xy[v, 0], xy[v, 1], station[v] = x, y, there
@@ -96,7 +99,8 @@ def quad_quality(q, xy, quads):
 def lift_worst(floor, limit, passes, patch, inv, bound, rails):
     """Raise elements whose quality is below ``floor``; return how many remain below.
 
-    An edge may grow to ``sqrt(limit)`` times its target, or stay as long as it was.
+    An edge may grow to ``sqrt(limit)`` times its target and to the limit of its elements, or stay as long
+    as it was.
     """
     xy, quads, ring, _ = patch
     star = np.empty((ring.shape[1], STAR_COLUMNS))
@@ -114,9 +118,9 @@ def lift_worst(floor, limit, passes, patch, inv, bound, rails):
                 m = gather(v, patch, inv, bound, star)
                 kind = rails[1][v]
                 if kind == -1:
-                    lift_free(v, xy, star, m, limit)
+                    lift_free(v, xy, star, m, 1.0 / limit)
                 elif kind >= 0:
-                    lift_sliding(v, xy, star, m, limit, rails[0], kind, rails[2])
+                    lift_sliding(v, xy, star, m, 1.0 / limit, rails[0], kind, rails[2])
         if left == 0:
             break
     return left
