@@ -232,18 +232,18 @@ def _try(x, y, h, turn, layer, sampler, hint, setting, table, packing, region, p
     """
     angle = setting[ANGLE] + turn
     c, s = math.cos(angle), math.sin(angle)
+    if blocked(x, y, h, c, s, layer, setting, table, packing):
+        return REFUSE, x, y
     k = -1
     if layer == INNER and len(plateaus) > 0:
         k = _wide_plateau(x, y, h, turn, sampler, setting, plateaus, hint)
     if k < 0:
-        return (REFUSE if blocked(x, y, h, c, s, layer, setting, table, packing) else ACCEPT), x, y
+        return ACCEPT, x, y
     lx, ly = _on_lattice(x, y, setting, plateaus, k)
     inside, home = within(region, lx, ly, CLEARANCE * h, home)
     if inside and not blocked(lx, ly, h, c, s, layer, setting, table, packing):
         return ACCEPT, lx, ly
-    if max(abs(lx - x), abs(ly - y)) < NEAR_LATTICE * h or blocked(x, y, h, c, s, layer, setting, table, packing):
-        return REFUSE, x, y
-    return POSTPONE, x, y
+    return (REFUSE if max(abs(lx - x), abs(ly - y)) < NEAR_LATTICE * h else POSTPONE), x, y
 
 
 @njit(nogil=True, cache=True, _nrt=False)
