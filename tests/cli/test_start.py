@@ -33,9 +33,12 @@ def test_every_command_explains_itself(command: str, capsys: pytest.CaptureFixtu
     assert f"Usage: sizeviz {command}" in capsys.readouterr().out
 
 
-def test_no_command_shows_the_help(capsys: pytest.CaptureFixture) -> None:
+def test_no_command_opens_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[object] = []
+    monkeypatch.setattr("sizeviz.app.main", lambda sources, grab: opened.append((sources, grab)) or 0)
     assert run_command_line([]) == 0
-    assert "compare" in capsys.readouterr().out
+    assert run_command_line(["gui", "ring", "--grab", "seen.png"]) == 0
+    assert opened == [([], None), (["ring"], "seen.png")]
 
 
 def test_version_goes_to_the_shell() -> None:
