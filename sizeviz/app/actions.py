@@ -43,8 +43,11 @@ class Command:
 COMMANDS: tuple[Command, ...] = (
     Command("open", "Open file…", "File", "Ctrl+O"),
     Command("canvas", "New blank canvas", "File", "Ctrl+N"),
-    Command("save-picture", "Save a picture of this view…", "File", "Ctrl+S"),
-    Command("save-comparison", "Save the comparison picture…", "File", "Ctrl+Shift+S"),
+    Command("save", "Save the study", "File", "Ctrl+S"),
+    Command("save-as", "Save the study as…", "File", "Ctrl+Shift+S"),
+    Command("recover", "Recover the last unsaved study", "File"),
+    Command("save-picture", "Save a picture of this view…", "File", "Ctrl+E"),
+    Command("save-comparison", "Save the comparison picture…", "File", "Ctrl+Shift+E"),
     Command("quit", "Quit", "File", "Ctrl+Q"),
     Command("undo", "Undo", "Edit", "Ctrl+Z"),
     Command("redo", "Redo", "Edit", "Ctrl+Shift+Z Ctrl+Y"),

@@ -7,27 +7,28 @@ from __future__ import annotations
 
 import logging
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from qtpy.QtCore import QObject, QTimer, Signal
 
-from sizeviz.app.brush.live import LiveStroke, covers_nothing, stroke_words
+from sizeviz.app.brush.live import LiveStroke, Painted, covers_nothing, stroke_words
 from sizeviz.app.engine import LIVE_NODES, Engine, Preview, with_field
 from sizeviz.app.inspect.locate import ElementLocator
 from sizeviz.app.jobs import Failure, Job, JobRunner
+from sizeviz.app.news import Displayed, Notice
 from sizeviz.app.store import StudyStore
 from sizeviz.errors import SizevizError
 from sizeviz.scene.subject import METHOD_TITLES, Subject, subject_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from sizeviz.geometry import QuadMesh
     from sizeviz.sizing import SizeField
     from sizeviz.sources import Source
-    from sizeviz.sources.painting import Brush, StrokeShape
+    from sizeviz.sources.painting import Brush, Stroke, StrokeShape
     from sizeviz.study import Study, StudyOptions
 
 AUTO_SECONDS = 3.0
@@ -40,23 +41,6 @@ PREVIEW = "preview"
 """Title of the jobs that process a field while the brush moves."""
 
 LOG = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Notice:
-    """A message that asks for no answer: level 'info', 'warning' or 'error', a line, details to copy."""
-
-    level: str
-    text: str
-    details: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Displayed:
-    """What a pane shows of a method: the newest results, or the last good ones, marked stale."""
-
-    subject: Subject
-    stale: bool
 
 
 class Controller(QObject):
@@ -83,6 +67,8 @@ class Controller(QObject):
         Something to tell.
     opened(str)
         A source was opened, by what name it can be opened again.
+    study_file_requested(str)
+        A whole study is to be opened, not a source.
     settled()
         Every wanted method of the current study is complete.
     """
@@ -93,6 +79,7 @@ class Controller(QObject):
     busy_changed = Signal(bool)
     noticed = Signal(object)
     opened = Signal(str)
+    study_file_requested = Signal(str)
     settled = Signal()
 
     def __init__(self, engine: Engine, parent: QObject | None = None) -> None:
@@ -106,7 +93,7 @@ class Controller(QObject):
         self.preview: Preview | None = None
         self._last_good: dict[str, Subject] = {}
         self._locators: WeakKeyDictionary[QuadMesh, ElementLocator] = WeakKeyDictionary()
-        self._originals: WeakKeyDictionary[Source, SizeField] = WeakKeyDictionary()
+        self._painted: WeakKeyDictionary[Source, Painted] = WeakKeyDictionary()
         self._last_edit = ("", 0.0, 0)
         self._last_seconds: dict[str, float] = {}
         self._preview_due = False
@@ -168,6 +155,14 @@ class Controller(QObject):
             self._locators[mesh] = ElementLocator(mesh)
         return self._locators[mesh]
 
+    def know(self, locators: Sequence[tuple[QuadMesh, ElementLocator]]) -> None:
+        """Take locators that a worker has built."""
+        self._locators.update(locators)
+
+    def painted(self, source: Source) -> Painted:
+        """Return how a source was painted, so far as it was."""
+        return self._painted.get(source) or Painted(source.field)
+
     def is_cheap(self) -> bool:
         """Return whether a change may start a run by itself."""
         return self.automatic and sum(self._last_seconds.values()) <= AUTO_SECONDS
@@ -175,7 +170,10 @@ class Controller(QObject):
     # -- intents: sources and options ------------------------------------------------------------------------------
 
     def open_source(self, spec: str) -> None:
-        """Open an example, a file or a formula, then run it."""
+        """Open an example, a file or a formula, then run it; or a study file."""
+        if spec.lower().endswith(".sizeviz"):
+            self.study_file_requested.emit(spec)
+            return
 
         def opened(source: Source) -> None:
             self.set_source(source, f"Open {source.label}")
@@ -196,6 +194,15 @@ class Controller(QObject):
         options = self.engine.default_options() if study is None else study.options
         self.store.commit(Study(source, options), words)
         self.apply()
+
+    def set_study(self, study: Study, strokes: Sequence[Stroke], original: SizeField | None, words: str) -> None:
+        """Show a whole study, with what was painted and what it results in; only what it lacks is run."""
+        self._painted[study.source] = Painted(original or study.source.field, tuple(strokes))
+        self._last_seconds = {name: run.total_seconds for name, run in study.runs.items() if run.is_complete}
+        self.store.commit(study, words)
+        self.apply()
+        if not self.missing():
+            self.settled.emit()
 
     def set_options(self, options: StudyOptions, words: str, key: str = "") -> None:
         """Ask for something else of the pipeline; results that it changes become stale."""
@@ -249,7 +256,7 @@ class Controller(QObject):
         if study is None:
             return
         source = study.source
-        self.stroke = LiveStroke(source.field, brush, shape, self._originals.get(source, source.field))
+        self.stroke = LiveStroke(source.field, brush, shape, self.painted(source).original)
         self.extend_stroke(x, y)
 
     def extend_stroke(self, x: float, y: float) -> None:
@@ -273,8 +280,9 @@ class Controller(QObject):
         if covers_nothing(live.stroke, live.base):
             self.preview_changed.emit()
             return
-        source = with_field(study.source, live.field, int(study.source.provenance.get("strokes", 0)) + 1)
-        self._originals[source] = self._originals.get(study.source, study.source.field)
+        painted = self.painted(study.source).with_stroke(live.stroke)
+        source = with_field(study.source, live.field, len(painted.strokes))
+        self._painted[source] = painted
         self.store.commit(study.with_source(source), f"Paint: {stroke_words(live.brush)}")
         self.preview_changed.emit()
         self._after_edit()

@@ -24,7 +24,7 @@ from qtpy.QtWidgets import (
 )
 
 if TYPE_CHECKING:
-    from sizeviz.app.controller import Notice
+    from sizeviz.app.news import Notice
 
 TOAST_MS = 6000
 """How long a message that is no error stays."""

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QFileDialog
 
-from sizeviz.app.controller import Notice
 from sizeviz.app.feedback import About
+from sizeviz.app.news import Notice
 from sizeviz.app.panes.board import Selection
+from sizeviz.app.panes.remembered import restore_view
 from sizeviz.app.qt import QShortcut
 from sizeviz.app.theme import DARK, LIGHT
 
@@ -28,6 +29,9 @@ CANVAS_SIZE = 0.05
 def connect_panels(window: MainWindow) -> None:
     """Send every panel's intents to the controller, and every change back to the widgets."""
     controller, board = window.controller, window.board
+    window.files.view_restored.connect(lambda values: restore_view(board, values))
+    window.files.state_changed.connect(window.show_title)
+    window.welcome.recover_requested.connect(window.files.recover)
     for source in (window.source, window.welcome):
         source.open_requested.connect(controller.open_source)
         source.file_requested.connect(lambda: open_file(window))
@@ -61,6 +65,9 @@ def connect_actions(window: MainWindow) -> None:
     controller, board, on = window.controller, window.board, window.actions_.on
     on("open", lambda: open_file(window))
     on("canvas", lambda: controller.open_canvas(CANVAS_NODES, CANVAS_SIZE))
+    on("save", lambda: save_study(window, window.files.path))
+    on("save-as", lambda: save_study(window))
+    on("recover", lambda: recover_last(window))
     on("save-picture", lambda: save_picture(window))
     on("save-comparison", lambda: save_comparison(window))
     on("quit", window.close)
@@ -105,12 +112,34 @@ def connect_actions(window: MainWindow) -> None:
 def open_file(window: MainWindow) -> None:
     """Ask for a file and open it."""
     path, _ = QFileDialog.getOpenFileName(
-        window, "Open a size field or an image", "",
-        "Size fields and images (*.png *.jpg *.jpeg *.tif *.tiff *.npy *.npz *.vtu *.vtk *.vti *.vtp *.msh *.pos "
-        "*.mesh *.sol *.nii *.gz *.dcm);;All files (*)",
+        window, "Open a study, a size field or an image", "",
+        "Studies, size fields and images (*.sizeviz *.png *.jpg *.jpeg *.tif *.tiff *.npy *.npz *.vtu *.vtk *.vti "
+        "*.vtp *.msh *.pos *.mesh *.sol *.nii *.gz *.dcm);;All files (*)",
     )  # fmt: skip
     if path:
         window.controller.open_source(path)
+
+
+def save_study(window: MainWindow, path: Path | None = None) -> None:
+    """Save the study; asks for the place if none is given."""
+    study = window.controller.study
+    if study is None:
+        return
+    if path is None:
+        asked = window.files.path or Path(f"{study.source.name}.sizeviz")
+        chosen, _ = QFileDialog.getSaveFileName(window, "Save the study", str(asked), "Studies (*.sizeviz)")
+        path = Path(chosen) if chosen else None
+    if path is not None:
+        window.files.save(path)
+
+
+def recover_last(window: MainWindow) -> None:
+    """Open the newest study that was left unsaved."""
+    found = window.files.leftovers()
+    if found:
+        window.files.recover(found[0])
+    else:
+        window.controller.noticed.emit(Notice("info", "There is no unsaved study to recover"))
 
 
 def save_picture(window: MainWindow, path: str | None = None) -> None:

@@ -100,7 +100,7 @@ def _set_surface_format() -> None:
 
 def _catch_errors(window: MainWindow) -> None:
     """Show what goes wrong in a slot instead of ending the process, which is what PyQt would do."""
-    from sizeviz.app.controller import Notice
+    from sizeviz.app.news import Notice
 
     def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if issubclass(kind, KeyboardInterrupt):

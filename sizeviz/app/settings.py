@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
+from platformdirs import user_state_path
 from qtpy.QtCore import QSettings
 
 RECENT = 10
@@ -16,10 +18,11 @@ class Settings:
     Parameters
     ----------
     path : str, optional
-        An ini file to keep them in; the platform's own place by default.
+        An ini file to keep them in, autosaves beside it; the platform's own places by default.
     """
 
     def __init__(self, path: str | None = None) -> None:
+        self.autosaves = user_state_path("sizeviz") / "autosave" if path is None else Path(path).parent / "autosave"
         self._store = QSettings("sizeviz", "sizeviz") if path is None else QSettings(path, QSettings.Format.IniFormat)
 
     @property

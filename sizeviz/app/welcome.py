@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import QSize, Qt, Signal
 from qtpy.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
+from sizeviz.app.files import age_words
 from sizeviz.app.panels.source import thumbnail
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from sizeviz.app.engine import Example
+    from sizeviz.study.storage_autosave import Leftover
 
 CARD = QSize(124, 124)
 
@@ -24,8 +26,15 @@ class Welcome(QWidget):
     open_requested = Signal(str)
     file_requested = Signal()
     canvas_requested = Signal()
+    recover_requested = Signal(object)
 
-    def __init__(self, examples: Sequence[Example], recent: Sequence[str], parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        examples: Sequence[Example],
+        recent: Sequence[str],
+        unsaved: Sequence[Leftover] = (),
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
         title = QLabel("See whether a mesh honours its size field")
         title.setProperty("role", "title")
@@ -42,6 +51,8 @@ class Welcome(QWidget):
         column.addLayout(self._buttons())
         if recent:
             column.addWidget(self._recent(recent), 0, Qt.AlignmentFlag.AlignHCenter)
+        if unsaved:
+            column.addWidget(self._unsaved(unsaved), 0, Qt.AlignmentFlag.AlignHCenter)
         column.addStretch(2)
 
     def _gallery(self, examples: Sequence[Example]) -> QWidget:
@@ -73,6 +84,20 @@ class Welcome(QWidget):
         row.addWidget(canvas)
         row.addStretch(1)
         return row
+
+    def _unsaved(self, unsaved: Sequence[Leftover]) -> QWidget:
+        frame = QWidget()
+        row = QHBoxLayout(frame)
+        label = QLabel("Not saved:")
+        label.setProperty("role", "muted")
+        row.addWidget(label)
+        for leftover in unsaved[:3]:
+            button = QToolButton()
+            button.setText(f"Recover the study of {age_words(leftover.modified)}")
+            button.setToolTip("It was open when the window was closed or sizeviz was ended")
+            button.clicked.connect(lambda checked=False, leftover=leftover: self.recover_requested.emit(leftover))
+            row.addWidget(button)
+        return frame
 
     def _recent(self, recent: Sequence[str]) -> QWidget:
         frame = QWidget()

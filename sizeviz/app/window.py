@@ -26,6 +26,7 @@ from sizeviz.app.actions import Actions
 from sizeviz.app.brush.tool import PaintTool
 from sizeviz.app.controller import Controller
 from sizeviz.app.feedback import LogPanel, Progress, Toast
+from sizeviz.app.files import StudyFiles
 from sizeviz.app.inspect.histogram import HistogramPanel
 from sizeviz.app.inspect.judge import StatisticsPanel, WorstPanel
 from sizeviz.app.inspect.look import Inspector
@@ -37,6 +38,7 @@ from sizeviz.app.panels.paint import PaintPanel
 from sizeviz.app.panels.source import SourcePanel
 from sizeviz.app.panes.board import PaneBoard
 from sizeviz.app.panes.canvas import GLCanvas
+from sizeviz.app.panes.remembered import view_values
 from sizeviz.app.settings import Settings
 from sizeviz.app.theme import THEMES, Theme, apply_theme
 from sizeviz.app.welcome import Welcome
@@ -88,6 +90,7 @@ class MainWindow(QMainWindow):
         self.actions_ = Actions(self)
         self.examples = list(engine.examples())
         self._make_canvas = make_canvas
+        self.files = StudyFiles(self.controller, self.settings.autosaves, lambda: view_values(self.board), self)
         self._build_centre()
         self._build_pipeline()
         self._build_inspector()
@@ -110,7 +113,7 @@ class MainWindow(QMainWindow):
 
     def _build_centre(self) -> None:
         self.board = PaneBoard(self.controller, self._make_canvas)
-        self.welcome = Welcome(self.examples, self.settings.recent)
+        self.welcome = Welcome(self.examples, self.settings.recent, self.files.leftovers())
         self.pages = QStackedWidget()
         self.pages.addWidget(self.welcome)
         self.pages.addWidget(self.board)
@@ -222,13 +225,20 @@ class MainWindow(QMainWindow):
                 dock.show()
             if not self._laid_out:
                 self.resizeDocks(docks, [SIDEBAR, INSPECTOR], Qt.Orientation.Horizontal)
-        self.setWindowTitle(f"{study.source.label} – sizeviz")
+        self.show_title()
         self.source.show_source(study.source)
         for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):
             panel.show_options(study.options)
         self.board.refresh()
         self.show_judgement()
         self.show_state()
+
+    def show_title(self) -> None:
+        """Name the study's file, or what it was opened from, and mark unsaved changes."""
+        study, path = self.controller.study, self.files.path
+        if study is not None:
+            self.setWindowTitle(f"{study.source.label if path is None else path.name}[*] – sizeviz")
+            self.setWindowModified(self.files.is_modified)
 
     def show_judgement(self) -> None:
         """Bring table, histograms and the worst elements to the active pane."""
@@ -247,6 +257,8 @@ class MainWindow(QMainWindow):
         missing = len(self.controller.missing())
         self.actions_["apply"].setEnabled(missing > 0 and not busy)
         self.actions_["cancel"].setEnabled(busy)
+        for name in ("save", "save-as"):
+            self.actions_[name].setEnabled(self.controller.study is not None)
         self.judge_panel.show_state(missing, busy)
 
     def set_theme(self, theme: Theme) -> None:
@@ -282,6 +294,7 @@ class MainWindow(QMainWindow):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Stop the worker, remember the layout, free VTK; in this order, so that nothing is used after it is gone."""
         self.controller.jobs.shut_down()
+        self.files.close()
         for sender in (self.controller.store.stack, self.controller.store, self.controller, self.controller.jobs):
             sender.blockSignals(True)  # what is torn down from here on is nobody's news
         self.settings.save_layout(self)

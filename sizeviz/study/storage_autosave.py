@@ -77,6 +77,13 @@ class Autosave:
         """Remove the autosave: the study was saved, or its changes were given up."""
         self.path.unlink(missing_ok=True)
 
+    def leave(self) -> None:
+        """Let go of the lock and leave the autosave to be found the next time: there are unsaved changes."""
+        if self._lock is not None:
+            self._lock_path.unlink(missing_ok=True)
+            self._lock.close()
+            self._lock = None
+
     def close(self) -> None:
         """Remove the autosave and let go of the lock."""
         if self._lock is not None:

@@ -22,9 +22,9 @@ from qtpy.QtWidgets import (
 )
 
 from sizeviz.app.actions import COMMANDS
-from sizeviz.app.controller import Notice
 from sizeviz.app.feedback import time_left
 from sizeviz.app.inspect.judge import worst
+from sizeviz.app.news import Notice
 from sizeviz.app.palette import match
 from sizeviz.app.panels.options import SizePanel, SmoothPanel
 from sizeviz.app.panels.paint import PaintPanel

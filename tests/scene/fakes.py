@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from sizeviz.conformity import MeshReport
 from sizeviz.geometry import Domain, QuadMesh
 from sizeviz.scene.subject import Subject
 from sizeviz.sizing import BackgroundMesh, SizeField
-
-
-@dataclass(frozen=True, eq=False)
-class FakeReport:
-    ratios: dict[str, np.ndarray]
-    sizes: dict[str, np.ndarray]
-    quality: np.ndarray
-    n_quads: int = 0
-    n_nodes: int = 0
-    n_inverted: int = 0
-    ideal_quads: float | None = None
-    irregular_percent: float = 0.0
 
 
 def lattice(n: int, bend: float = 0.0, seed: int = 0) -> QuadMesh:
@@ -43,13 +30,12 @@ def ring_sizes(points: np.ndarray, floor: float = 0.01) -> np.ndarray:
     return np.minimum(0.25, floor + away / 3.0)
 
 
-def fake_report(mesh: QuadMesh, asked: np.ndarray) -> FakeReport:
+def fake_report(mesh: QuadMesh, asked: np.ndarray) -> MeshReport:
     corner = mesh.points[mesh.quads]
     sides = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
     sizes = {"mean-edge": sides.mean(axis=1), "sqrt-area": np.sqrt(mesh.areas), "max-edge": sides.max(axis=1)}
     quality = mesh.areas / (sides**2).mean(axis=1)
-    ratios = {name: size / asked for name, size in sizes.items()}
-    return FakeReport(ratios, sizes, quality, mesh.n_quads, mesh.n_points, 0, 0.9 * mesh.n_quads, 4.0)
+    return MeshReport(asked, sizes, quality, mesh.n_points, 0.04, 1.0, 0.9 * mesh.n_quads)
 
 
 def grid_field(nodes: int = 65, floor: float = 0.01, label: str = "ring") -> SizeField:

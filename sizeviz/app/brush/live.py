@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,18 @@ from sizeviz.sources.painting import (
 
 if TYPE_CHECKING:
     from sizeviz.sizing import SizeField
+
+
+@dataclass(frozen=True, eq=False)
+class Painted:
+    """How a field came about by painting: the field before the first stroke, and the strokes in order."""
+
+    original: SizeField
+    strokes: tuple[Stroke, ...] = ()
+
+    def with_stroke(self, stroke: Stroke) -> Painted:
+        """Return the painting with one more stroke."""
+        return Painted(self.original, (*self.strokes, stroke))
 
 
 class LiveStroke:

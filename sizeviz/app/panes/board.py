@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sizeviz.app.controller import Controller, Displayed
+    from sizeviz.app.controller import Controller
+    from sizeviz.app.news import Displayed
     from sizeviz.app.panes.canvas import Canvas
     from sizeviz.scene.camera import Camera2D
     from sizeviz.scene.scale import ColorScale
