@@ -27,6 +27,10 @@ CORE_SWEEPS = 2
 """Sweeps of the cavity alone."""
 SWEEPS = 10
 """Most sweeps of the cavity and its ring after that; further ones were measured to change no verdict."""
+RELIEF = 0.9
+"""Share of the excess of its surroundings that an insertion may leave."""
+EDGE_WEIGHT = 200.0
+"""Weight of the edge term around an insertion."""
 AFTER_SWEEPS = 8
 """Most sweeps around an operation that stands."""
 REACHABLE = 10.0
@@ -61,14 +65,19 @@ def element_measures(q, patch, inv, objective):
 
 
 @compiled
-def measure(region, n, patch, inv, objective):
-    """Return total distortion, smallest sigma, worst quality and largest stretch of the elements of a region."""
-    total, low, quality, longest = 0.0, math.inf, 1.0, 0.0
+def measure(region, n, patch, aims, objective):
+    """Return total distortion, smallest sigma, worst quality, largest stretch and excess of a region's elements.
+
+    The excess is the sum of what R^2 exceeds 1 by, 0 where the elements have no limit.
+    """
+    total, low, quality, longest, excess = 0.0, math.inf, 1.0, 0.0, 0.0
     for i in range(n):
-        t = element_measures(region[i], patch, inv, objective)
+        q = region[i]
+        t = element_measures(q, patch, aims[2], objective)
         total += t[0]
         low, quality, longest = min(low, t[1]), min(quality, t[2]), max(longest, t[3])
-    return total, low, quality, longest
+        excess += max(0.0, t[3] / aims[2][q] * aims[4][q] - 1.0)
+    return total, low, quality, longest, excess
 
 
 @compiled
@@ -190,7 +199,7 @@ def save_places(nodes, n, region, n_region, patch, rails, aims, kept):
         kept[3][i, 0], kept[3][i, 1], kept[3][i, 2] = patch[0][v, 0], patch[0][v, 1], rails[2][v]
     for i in range(n_region):
         q = region[i]
-        kept[4][i, 0], kept[4][i, 1] = aims[1][q], aims[2][q]
+        kept[4][i, 0], kept[4][i, 1], kept[4][i, 2] = aims[1][q], aims[2][q], aims[4][q]
         kept[5][i] = aims[3][q]
 
 
@@ -202,17 +211,19 @@ def restore_places(nodes, n, region, n_region, patch, rails, aims, kept):
         patch[0][v, 0], patch[0][v, 1], rails[2][v] = kept[3][i, 0], kept[3][i, 1], kept[3][i, 2]
     for i in range(n_region):
         q = region[i]
-        aims[1][q], aims[2][q] = kept[4][i, 0], kept[4][i, 1]
+        aims[1][q], aims[2][q], aims[4][q] = kept[4][i, 0], kept[4][i, 1], kept[4][i, 2]
         aims[3][q] = kept[5][i]
 
 
 @compiled
 def better(before, after, change, law):
-    """Judge (distortion, sigma, quality, stretch) after an operation against before; law holds the guards.
+    """Judge (distortion, sigma, quality, stretch, excess) after an operation against before; law holds the guards.
 
     ``law`` is (objective, worth of one unit of valence energy, lowest quality, largest squared stretch, quality that
-    a rescue demands or 0).
+    a rescue demands or 0; negative, the quality below which an insertion, which lowers the excess, must not fall).
     """
+    if law[4] < 0.0:
+        return after[2] >= min(before[2], -law[4]) and after[4] < RELIEF * before[4]
     if law[4] > 0.0:
         return after[2] >= law[4] and after[3] <= max(before[3], law[3])
     if after[1] <= 0.0 and before[1] > 0.0:
@@ -247,14 +258,14 @@ def attempt(kind, code, arg, change, patch, topo, marks, aims, rails, law, room,
     n_before = collect_region(nodes, n, patch, marks, tops[2], region)
     if n < 0 or n_before + 8 > len(region):
         return 0
-    before = measure(region, n_before, patch, aims[2], law[0])
+    before = measure(region, n_before, patch, aims, law[0])
     save_links(old, n_old, core, n_core, patch, kept)
     save_places(nodes, n, region, n_before, patch, rails, aims, kept)
     fits = exchange(old, n_old, new, n_new, slots, patch)
     for i in range(n_spots):
         v = int(spots[i, 0])
         patch[0][v, 0], patch[0][v, 1] = spots[i, 1], spots[i, 2]
-    if fits and relaxed_better(before, change, n_core, n, n_new, patch, marks, aims, rails, law, room, tops):
+    if fits and relaxed_better(before, change, n_core, n, n_old, n_new, patch, marks, aims, rails, law, room, tops):
         settle(kind, n_old, n_new, n_core, patch[3], room, tops)
         return n
     restore_links(old, n_old, core, n_core, slots, n_new, patch, kept)
@@ -263,22 +274,34 @@ def attempt(kind, code, arg, change, patch, topo, marks, aims, rails, law, room,
 
 
 @compiled
-def relaxed_better(before, change, n_core, n, n_new, patch, marks, aims, rails, law, room, tops):
+def inherit(slots, n_new, n_old, bound):
+    """Give the new elements the strictest limit among the old ones, whose rows are the first slots."""
+    most = 0.0
+    for i in range(min(n_old, n_new)):
+        most = max(most, bound[slots[i]])
+    for i in range(n_new):
+        bound[slots[i]] = most
+
+
+@compiled
+def relaxed_better(before, change, n_core, n, n_old, n_new, patch, marks, aims, rails, law, room, tops):
     """Relax around a change just made and judge it."""
     slots, nodes, region, star = room[4], room[6], room[13], room[9]
+    inherit(slots, n_new, n_old, aims[4])
     aim_elements(slots, n_new, patch, aims)
     tops[2] += 1
     n_after = collect_region(nodes, n, patch, marks, tops[2], region)
     if n_after > len(region):
         return False
-    raw = measure(region, n_after, patch, aims[2], law[0])
+    raw = measure(region, n_after, patch, aims, law[0])
     hope = raw[0] - before[0] + law[1] * change
-    if not relax(nodes, n, n_core, patch, aims, (law[0], 0.0), rails, star, hope, law[4] > 0.0):
+    pull = law[0], EDGE_WEIGHT if law[4] < 0.0 else 0.0
+    if not relax(nodes, n, n_core, patch, aims, pull, rails, star, hope, law[4] != 0.0):
         return False
     aim_elements(region, n_after, patch, aims)
-    if not better(before, measure(region, n_after, patch, aims[2], law[0]), change, law):
+    if not better(before, measure(region, n_after, patch, aims, law[0]), change, law):
         return False
-    finish(nodes, n, patch, aims, (law[0], 0.0), rails, star)
+    finish(nodes, n, patch, aims, pull, rails, star)
     return True
 
 

@@ -118,6 +118,17 @@ def offer_opens(v, m, patch, topo, work, limit, found, n):
 
 
 @compiled
+def splits(v, patch, topo, work, limit, found):
+    """List the splits of an inner node as ``candidates`` does, and nothing else."""
+    if topo[1][v]:
+        return NONE
+    m = fan(v, patch, topo[2], work[0], work[1], work[2])
+    if m < 4:
+        return NONE
+    return offer_opens(v, m, patch, topo, work, limit, found, NONE)
+
+
+@compiled
 def candidates(v, patch, topo, work, limit, found):
     """List the operations near node v that change the energy by at most ``limit``, best first; return their number.
 

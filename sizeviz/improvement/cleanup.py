@@ -41,6 +41,8 @@ LARGEST_STRETCH = 2.2
 """Longest edge over target size that an operation may leave, unless it was larger before."""
 RESCUES = ((0.6, 2.2), (0.4, 3.0), (0.2, 4.0), (0.05, 8.0), (1e-3, 1e3))
 """Quality demanded of a rescue and the longest edge over target size it may leave, ever more modest."""
+MOST_SPLIT = 12
+"""Change of valence energy that the split of a node may bring; 4 at a regular one."""
 BUDGET = 256
 """Nodes visited between two looks at the monitor."""
 
@@ -60,7 +62,7 @@ class _Tile:
         fan = tuple(np.zeros(MOST_ELEMENTS + 1, dtype=np.int64) for _ in range(3))
         kept = (
             np.zeros((MOST_ELEMENTS, 4), dtype=np.int32), np.zeros((MOST_CORE, width), dtype=np.int32),
-            np.zeros(MOST_CORE, dtype=np.int32), np.zeros((MOST_NODES, 3)), np.zeros((MOST_REGION, 2)),
+            np.zeros(MOST_CORE, dtype=np.int32), np.zeros((MOST_NODES, 3)), np.zeros((MOST_REGION, 3)),
             np.zeros(MOST_REGION, dtype=np.int32),
         )  # fmt: skip
         self.room = (
@@ -89,7 +91,7 @@ class Cleaner:
         n = len(work.xy)
         tile_of = (np.arange(n, dtype=np.int64) + (TILE // 2 if shift and n > TILE else 0)) // (n if whole else TILE)
         n_tiles = int(tile_of[-1]) + 1
-        spare = SPARE + TILE // 16
+        spare = SPARE + (n if whole else TILE) // 16
         self.patch = work.patch
         boundary = np.zeros(n, dtype=np.bool_)
         _mesh_kernels.mark_boundary(work.quads, work.ring, work.count, boundary)
@@ -160,13 +162,22 @@ class Cleaner:
 
         ``stretch`` is the longest edge over the target size that it may leave. The cleaner must be ``whole``.
         """
+        return self._visit_some(nodes, DEGENERATE // 2, (self.work.objective, 0.0, 0.0, stretch**2, demand))
+
+    def insert(self, nodes: NDArray[np.integer], lowest: float) -> int:
+        """Split nodes beside edges beyond their limits, each split one element more; return how many stood.
+
+        No quality falls below ``lowest``, unless it was lower before. The cleaner must be ``whole``.
+        """
+        return self._visit_some(nodes, MOST_SPLIT, (self.work.objective, 0.0, 0.0, 0.0, -lowest))
+
+    def _visit_some(self, nodes: NDArray[np.integer], limit: int, law: tuple[Any, ...]) -> int:
         tile = self.tiles[0]
         tile.queue[: len(nodes)], self.queued[nodes] = nodes, True
         tile.tops[3:5] = 0, len(nodes)
-        law = (self.work.objective, 0.0, 0.0, stretch**2, demand)
         done = 0
         while tile.tops[4] > 0:
-            done += self._clean(tile, DEGENERATE // 2, MOST_CANDIDATES - 1, law)
+            done += self._clean(tile, limit, MOST_CANDIDATES - 1, law)
         return done
 
 

@@ -11,6 +11,7 @@ from sizeviz.errors import InputError
 from sizeviz.improvement._conform import SAFE, Judge
 from sizeviz.improvement._workspace import STUCK, Workspace
 from sizeviz.improvement.chain import improve
+from sizeviz.improvement.cleanup import Cleaner
 from sizeviz.improvement.options import SmoothOptions
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 
@@ -31,6 +32,12 @@ LIFTS = 3
 """Passes that raise the worst elements; each knows the limits that the one before left."""
 FEW = 0.002
 """Share of wrong elements below which smoothing around them is cheaper than everywhere."""
+REPAIRS = 2
+"""Rounds of smoothing before elements are inserted where edges are still too long."""
+FIRM = 0.99
+"""What an insertion aims at; one that just met the limits would leave nothing for its neighbours."""
+FINEST, LOWEST = 0.75, 0.5
+"""Quality that an insertion must leave, in the first round and in the last."""
 CLOSE = 0.93
 LOOKS = 4
 """Elements with R below CLOSE are judged again after every LOOKS sweeps only."""
@@ -138,11 +145,11 @@ def guaranteed(
     options = options or GuaranteeOptions()
     work = improve(mesh, domain, tight, options.smooth, SubMonitor(monitor, 0.0, 0.6))
     judge = Judge(work, reference)
-    _aware(work, judge, SubMonitor(monitor, 0.6, 0.75))
-    _repair(work, judge, options.rounds, SubMonitor(monitor, 0.75, 0.85))
+    _aware(work, judge, SubMonitor(monitor, 0.6, 0.7))
+    judge = _inserted(work, judge, options.rounds, SubMonitor(monitor, 0.7, 0.85))
     _polish(work, judge, options, SubMonitor(monitor, 0.85, 0.95))
     judge.look(np.arange(len(work.quads)), SAFE)
-    _repair(work, judge, options.rounds, SubMonitor(monitor, 0.95, 1.0))
+    judge = _inserted(work, judge, options.rounds, SubMonitor(monitor, 0.95, 1.0))
     return work.result(), _report(work, judge)
 
 
@@ -158,6 +165,28 @@ def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
         if len(judge.wrong) <= FEW * len(everywhere):
             break
     monitor.step(1.0)
+
+
+def _inserted(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> Judge:
+    """Repair by smoothing and, where that leaves edges too long, by more elements; return a judge of the result."""
+    for n in range(rounds):
+        part = SubMonitor(monitor, n / rounds, (n + 1) / rounds)
+        _repair(work, judge, min(REPAIRS + n, rounds), part)
+        wrong = judge.wrong
+        if not len(wrong):
+            break
+        judge.limit(np.arange(len(work.quads)), FIRM)
+        if n:
+            # what an insertion left a little too long would not call for another
+            judge.limit(wrong, SLACK)
+        lowest = max(LOWEST, FINEST - 0.05 * n)
+        done = Cleaner(work, whole=True).insert(np.unique(work.quads[wrong]), lowest)
+        work.compact()
+        judge = Judge(work, judge.reference)
+        if not done:
+            _repair(work, judge, rounds, part)
+            break
+    return judge
 
 
 def _repair(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> None:
