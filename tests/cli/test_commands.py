@@ -28,12 +28,15 @@ class TestCompare:
     def test_writes_what_it_promises_and_nothing_else(self, compared: Path) -> None:
         names = {path.name for path in compared.iterdir()}
         assert names == {
-            "mesh-gradient-limiting.vtu", "mesh-size-preserving.vtu", "compare.png", "report.json",
+            "mesh-gradient-limiting.vtu", "mesh-size-preserving.vtu", "mesh-guaranteed.vtu",
+            "compare.png", "report.json",
         }  # fmt: skip
 
     def test_report_agrees_with_the_meshes(self, compared: Path) -> None:
         report = json.loads((compared / "report.json").read_text())
-        assert list(report["methods"]) == ["gradient-limiting", "size-preserving"]
+        assert list(report["methods"]) == ["gradient-limiting", "size-preserving", "guaranteed"]
+        promised = report["methods"]["guaranteed"]
+        assert promised["correct_percent"]["max_edge"] == 100.0 and promised["guarantee"].startswith("R <= 1 on all")
         for method, entry in report["methods"].items():
             content = read_mesh(compared / f"mesh-{method}.vtu")
             assert entry["n_quads"] == content.mesh.n_quads
