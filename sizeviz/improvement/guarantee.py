@@ -178,12 +178,12 @@ def _inserted(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> J
         judge.limit(np.arange(len(work.quads)), FIRM)
         if n:
             # what an insertion left a little too long would not call for another
-            judge.limit(wrong, SLACK)
+            judge.limit(judge.touched(judge.rings(wrong, 1)), SLACK)
         lowest = max(LOWEST, FINEST - 0.05 * n)
         done = Cleaner(work, whole=True).insert(np.unique(work.quads[wrong]), lowest)
         work.compact()
         judge = Judge(work, judge.reference)
-        if not done:
+        if not done and lowest == LOWEST:
             _repair(work, judge, rounds, part)
             break
     return judge
