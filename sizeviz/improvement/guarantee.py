@@ -41,6 +41,8 @@ FINEST, LOWEST = 0.75, 0.5
 CLOSE = 0.93
 LOOKS = 4
 """Elements with R below CLOSE are judged again after every LOOKS sweeps only."""
+FLAT = 1e-6
+"""Shape quality of an element that counts as one without area at a corner."""
 LARGEST_WEIGHT = 1e6
 
 
@@ -82,7 +84,7 @@ class GuaranteeReport:
     n_quads : int
         Elements of the mesh.
     elements : (K,) int64
-        Elements whose R is still above 1; empty where the guarantee holds.
+        Elements whose R is still above 1, or that have a flat or reflex corner; empty where the guarantee holds.
     ratios : (K,) float64
         Their R by the longest edge.
     reasons : tuple of str
@@ -105,7 +107,7 @@ class GuaranteeReport:
         if self.holds:
             return f"R <= 1 on all {self.n_quads} elements"
         return (
-            f"R > 1 on {len(self.elements)} of {self.n_quads} elements, at most {self.ratios.max():.3f}: "
+            f"{len(self.elements)} of {self.n_quads} elements are left, R at most {self.ratios.max():.3f}: "
             + "; ".join(f"{self.reasons.count(reason)} {reason}" for reason in sorted(set(self.reasons)))
         )
 
@@ -225,9 +227,13 @@ def _polish(work: Workspace, judge: Judge, options: GuaranteeOptions, monitor: M
 
 
 def _report(work: Workspace, judge: Judge) -> GuaranteeReport:
-    wrong = judge.wrong
+    flat = np.flatnonzero(judge.quality <= FLAT)
+    wrong = np.union1d(judge.wrong, flat)
     reasons = []
     for q in wrong:
+        if judge.quality[q] <= FLAT:
+            reasons.append("with a flat or reflex corner")
+            continue
         corner = work.quads[q]
         edges = np.hypot(*(work.xy[np.roll(corner, -1)] - work.xy[corner]).T)
         k = int(np.argmax(edges))
