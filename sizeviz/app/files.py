@@ -90,6 +90,13 @@ class StudyFiles(QObject):
             return False
         return base is None or study.source is not base.source or study.options != base.options
 
+    @property
+    def source_path(self) -> Path | None:
+        """The study file that holds the sizes as they are now, None where none does."""
+        study, base = self._controller.study, self._base
+        same = study is not None and base is not None and study.source is base.source
+        return self.path if same else None
+
     # -- opening ---------------------------------------------------------------------------------------------------
 
     def open(self, path: str) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QFileDialog
+from qtpy.QtWidgets import QApplication, QFileDialog
 
 from sizeviz.app.feedback import About
 from sizeviz.app.news import Notice
@@ -68,6 +68,8 @@ def connect_actions(window: MainWindow) -> None:
     on("save", lambda: save_study(window, window.files.path))
     on("save-as", lambda: save_study(window))
     on("recover", lambda: recover_last(window))
+    on("copy-command", lambda: copy_recipe(window, "command"))
+    on("copy-python", lambda: copy_recipe(window, "Python"))
     on("save-picture", lambda: save_picture(window))
     on("save-comparison", lambda: save_comparison(window))
     on("quit", window.close)
@@ -140,6 +142,36 @@ def recover_last(window: MainWindow) -> None:
         window.files.recover(found[0])
     else:
         window.controller.noticed.emit(Notice("info", "There is no unsaved study to recover"))
+
+
+def copy_recipe(window: MainWindow, language: str) -> None:
+    """Put on the clipboard what makes the meshes on show again, outside the window.
+
+    Painted sizes have no name: a script refers to the study file, a command to the sizes exported beside it.
+    """
+    from sizeviz.errors import SizevizError
+    from sizeviz.files import write_field
+    from sizeviz.study.recipe import as_command, as_python, has_name
+
+    study, methods, saved = window.controller.study, window.board.methods, window.files.source_path
+    if study is None:
+        return
+    saved = None if saved is None else saved.resolve()
+    exported = ""
+    try:
+        if language == "Python":
+            words = as_python(study, methods, study_file=saved)
+        elif saved is None or has_name(study.source):
+            words = as_command(study, methods)
+        else:
+            field_file = write_field(saved.with_suffix(".npz"), study.source.field)
+            words = as_command(study, methods, field_file=field_file)
+            exported = f"; its sizes are in {field_file.name}"
+    except SizevizError as error:
+        window.controller.noticed.emit(Notice("error", str(error)))
+        return
+    QApplication.clipboard().setText(words)
+    window.controller.noticed.emit(Notice("info", f"Copied as {language}{exported}"))
 
 
 def save_picture(window: MainWindow, path: str | None = None) -> None:

@@ -6,10 +6,11 @@ import os
 import numpy as np
 import pytest
 from app.fakes import FakeEngine, FlatCanvas
-from qtpy.QtWidgets import QFileDialog
+from qtpy.QtWidgets import QApplication, QFileDialog
 
 from sizeviz.app.settings import Settings
 from sizeviz.app.window import MainWindow
+from sizeviz.files import read_field
 from sizeviz.sources.painting import Brush, painted
 from sizeviz.study import Study
 from sizeviz.study.storage import StudyFile, read_study, write_study
@@ -177,3 +178,20 @@ def test_an_autosave_follows_a_change_by_itself_and_a_save_makes_it_needless(qtb
     qtbot.waitUntil(lambda: not opened.files._saving.is_busy, timeout=5000)
     save(qtbot, opened, tmp_path / "kept.sizeviz")
     assert not list(folder.glob("*.sizeviz"))
+
+
+def test_a_painted_study_is_copied_as_what_refers_to_its_files(qtbot, opened, tmp_path) -> None:
+    QApplication.clipboard().setText("before")
+    paint(opened.controller)
+    said = notices(opened)
+    for name in ("copy-command", "copy-python"):
+        opened.actions_[name].trigger()
+    assert [notice.level for notice in said] == ["error", "error"] and "save the study first" in said[0].text
+    assert QApplication.clipboard().text() == "before"
+    save(qtbot, opened, tmp_path / "painted.sizeviz")
+    opened.actions_["copy-python"].trigger()
+    assert str(tmp_path / "painted.sizeviz") in QApplication.clipboard().text()
+    opened.actions_["copy-command"].trigger()
+    words = QApplication.clipboard().text()
+    assert words.startswith("sizeviz compare ") and str(tmp_path / "painted.npz") in words
+    assert np.array_equal(read_field(tmp_path / "painted.npz").sizes, opened.controller.study.source.field.sizes)
