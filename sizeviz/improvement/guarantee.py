@@ -36,6 +36,8 @@ REPAIRS = 2
 """Rounds of smoothing before elements are inserted where edges are still too long."""
 FIRM = 0.99
 """What an insertion aims at; one that just met the limits would leave nothing for its neighbours."""
+HARD = 0.93
+"""The limit, over the smallest size, around elements that several rounds of insertions have left."""
 FINEST, LOWEST = 0.75, 0.5
 """Quality that an insertion must leave, in the first round and in the last."""
 CLOSE = 0.93
@@ -178,11 +180,13 @@ def _inserted(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> J
         if not len(wrong):
             break
         judge.limit(np.arange(len(work.quads)), FIRM)
+        nodes = np.unique(work.quads[wrong])
         if n:
-            # what an insertion left a little too long would not call for another
-            judge.limit(judge.touched(judge.rings(wrong, 1)), SLACK)
+            # what an insertion left a little too long would not call for another; it may be needed next to it
+            nodes = judge.rings(wrong, 1)
+            judge.limit(judge.touched(judge.rings(wrong, 1 + n // 4)), SLACK if n < 4 else HARD)
         lowest = max(LOWEST, FINEST - 0.05 * n)
-        done = Cleaner(work, whole=True).insert(np.unique(work.quads[wrong]), lowest)
+        done = Cleaner(work, whole=True).insert(nodes, lowest)
         work.compact()
         judge = Judge(work, judge.reference)
         if not done and lowest == LOWEST:

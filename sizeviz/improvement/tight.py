@@ -118,7 +118,7 @@ def chosen(reference: SizeFunction, target: SizeField) -> tuple[float, float]:
     slopes, weights, lowest = _slopes(target)
     on_floor = float(weights[lowest <= 1.02 * target.sizes.min()].sum() / weights.sum())
     if on_floor > PLATEAU:
-        return 0.75, 0.92
+        return 0.75, 0.917
     if float((slopes * weights).sum() / weights.sum()) > STEEP:
         return 2.0, 0.96
     return 1.5, 0.98
