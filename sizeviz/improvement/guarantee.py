@@ -180,7 +180,7 @@ def _inserted(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> J
         if not len(wrong):
             break
         judge.limit(np.arange(len(work.quads)), FIRM)
-        nodes = np.unique(work.quads[wrong])
+        nodes: NDArray[np.integer] = np.unique(work.quads[wrong])
         if n:
             # what an insertion left a little too long would not call for another; it may be needed next to it
             nodes = judge.rings(wrong, 1)

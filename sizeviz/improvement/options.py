@@ -26,7 +26,7 @@ class SmoothOptions:
     cleanup : bool
         Whether the connectivity may change. Default True.
     rounds : int
-        Passes of wide clean-up, each followed by three sweeps, 0 or more. Default 2.
+        Passes of wide clean-up, each followed by three sweeps, 0 or more. Default 1.
     floor : float
         Shape quality, 0 to 1, that the worst elements are raised to where moves can. Default 0.78.
     threads : int, optional
@@ -41,7 +41,7 @@ class SmoothOptions:
     objective: Objective = "reciprocal"
     sweeps: int = 10
     cleanup: bool = True
-    rounds: int = 2
+    rounds: int = 1
     floor: float = 0.78
     threads: int | None = None
 

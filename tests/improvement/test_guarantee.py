@@ -66,3 +66,16 @@ def test_tight_options_out_of_range_are_refused(name: str, value: float) -> None
 def test_guarantee_options_out_of_range_are_refused() -> None:
     with pytest.raises(InputError, match="rounds"):
         GuaranteeOptions(rounds=-1)
+
+
+def test_elements_are_inserted_where_the_mesh_is_too_coarse() -> None:
+    # 196 elements are too few for sizes that dip to 0.045 in the middle, however their nodes are moved
+    background = BackgroundMesh.unit_square_grid(65, 65)
+    away = np.hypot(*(background.points - 0.5).T)
+    field = SizeField(background, 0.1 - 0.055 * np.exp(-((away / 0.2) ** 2)), "dip")
+    mesh = disturbed(14, 0.1, 3)
+    result, report = guaranteed(mesh, unit(), field, field, GuaranteeOptions(smooth=SmoothOptions(cleanup=False)))
+    assert report.holds
+    assert result.n_quads > mesh.n_quads
+    assert shape_quality(result).min() > 0.5
+    assert result.areas.sum() == pytest.approx(1.0, abs=1e-12)
