@@ -4,8 +4,25 @@ import gc
 import os
 
 import pytest
+from qtpy.QtCore import QEvent
+from qtpy.QtWidgets import QApplication
 
 os.environ.setdefault("QT_API", "pyqt5")
+
+
+@pytest.fixture(autouse=True)
+def _no_widget_outlives_its_test():
+    """Destroy windows here, in Qt's order: left to the garbage collector, their parts go in any order, at any time."""
+    yield
+    application = QApplication.instance()
+    if application is None:
+        return
+    for widget in application.topLevelWidgets():
+        if widget.parent() is None:
+            widget.close()
+            widget.deleteLater()
+    application.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    gc.collect()
 
 
 @pytest.fixture(scope="session")

@@ -99,8 +99,10 @@ def test_hover_reads_and_click_pins_the_element_under_the_cursor(qtbot, opened) 
     mesh = opened.board.panes[0].subject.mesh
     centre = mesh.points[mesh.quads[300]].mean(axis=0)
     where = at(opened, *centre)
+    qtbot.mouseMove(glass(opened), where + QPoint(40, 40))  # a pointer that is there already would not move
     qtbot.mouseMove(glass(opened), where)
-    assert "element 300" in opened.readout.text() and "h*" in opened.readout.text()
+    qtbot.waitUntil(lambda: "element 300" in opened.readout.text(), timeout=5000)
+    assert "h*" in opened.readout.text()
     assert "hover" in glass(opened).marks
     qtbot.mouseClick(glass(opened), Qt.MouseButton.LeftButton, pos=where)
     assert opened.inspector.pin == ("gradient-limiting", 300)
