@@ -13,8 +13,9 @@ def compare(source: SourceArgument, /, *, out: OutArgument, options: PipelineOpt
     given; the guaranteed mesh may look at the field at every step and is a row of its own.
     """
     from sizeviz.cli.session import carried_out
+    from sizeviz.cli.single import method_run
     from sizeviz.study import COMPARED, GUARANTEED
 
     asked = options or PipelineOptions()
-    methods = COMPARED if asked.guarantee is False or not asked.smooth else (*COMPARED, GUARANTEED)
-    carried_out(source, out, asked, methods, comparison=True)
+    promised = method_run("size-preserving", asked) == GUARANTEED
+    carried_out(source, out, asked, (*COMPARED, GUARANTEED) if promised else COMPARED, comparison=True)

@@ -24,10 +24,10 @@ def run(
     from sizeviz.cli.session import carried_out
 
     asked = options or PipelineOptions()
-    carried_out(source, out, asked, (_method_run(method, asked),), comparison=False)
+    carried_out(source, out, asked, (method_run(method, asked),), comparison=False)
 
 
-def _method_run(method: MethodName, options: PipelineOptions) -> str:
+def method_run(method: MethodName, options: PipelineOptions) -> str:
     """Return the method, or the guaranteed one where that is meant.
 
     Raises

@@ -199,3 +199,12 @@ def test_ctrl_c_leaves_nothing(tmp_path: Path, capsys: pytest.CaptureFixture, mo
     monkeypatch.setattr(session, "loaded", interrupted)
     assert "stopped" in refused(["run", "ring", "--out", str(tmp_path / "out")], capsys, code=1)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("command", ["run", "compare"])
+def test_a_guarantee_that_cannot_be_given_is_refused(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    said = refused([command, "ring", "--out", str(tmp_path / "out"), "--guarantee", "--no-smooth"], capsys)
+    assert "--guarantee" in said and "--smooth" in said
+    assert not (tmp_path / "out").exists()
