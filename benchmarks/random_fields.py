@@ -1,13 +1,14 @@
-"""Random size fields for sweeps: point sources, valleys, spirals, noise, plateaus, on a grid over a domain's box."""
+"""Random size fields for sweeps: points, valleys, spirals, noise, plateaus, steps, on grids and triangulations."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, map_coordinates
 
-from sizeviz.sizing import BackgroundMesh, Grid, SizeField
+from sizeviz.geometry.delaunay import delaunay
+from sizeviz.sizing import BackgroundMesh, Grid, PreserveOptions, SizeField, ideal_count, preserved
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,11 +17,27 @@ if TYPE_CHECKING:
 
     from sizeviz.geometry import Domain
 
+    Pattern = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
 KINDS = ("points", "valleys", "spiral", "noise", "plateaus", "steps")
 
+BACKGROUNDS = ("grid", "triangles")
 
-def random_field(kind: str, rng: np.random.Generator, domain: Domain, *, ratio: float, nodes: int = 257) -> SizeField:
-    """Return a field between ``h`` and ``ratio * h``, where h is chosen so that meshes stay below about 60k quads.
+
+def random_field(
+    kind: str,
+    rng: np.random.Generator,
+    domain: Domain,
+    *,
+    ratio: float,
+    most: float,
+    options: PreserveOptions,
+    background: str = "grid",
+) -> tuple[SizeField, SizeField, float]:
+    """Return a field whose largest size is ``ratio`` times its smallest, and the preserved one.
+
+    The largest size is a fifth to a twentieth of the domain's width. Where the preserved field asks for more than
+    ``most`` elements all sizes grow, up to a bound; what that cannot do, a lower ratio does.
 
     Parameters
     ----------
@@ -32,60 +49,120 @@ def random_field(kind: str, rng: np.random.Generator, domain: Domain, *, ratio: 
         Whose bounding box the background covers.
     ratio : float
         Largest size over smallest.
-    nodes : int
-        Background nodes along the longer side.
+    most : float
+        Elements that the preserved field may ask for.
+    options : PreserveOptions
+        How it is preserved.
+    background : str
+        One of ``BACKGROUNDS``: a regular grid of 65 to 257 nodes along the longer side, or as many nodes strewn
+        more densely where sizes are small.
+
+    Returns
+    -------
+    field, target : SizeField
+        The random field, and the preserved one.
+    asked : float
+        Elements that ``target`` asks for.
     """
     x0, y0, x1, y1 = domain.bounds
+    width = max(x1 - x0, y1 - y0)
+    box = np.array([x1 - x0, y1 - y0]) / width
+    pattern = _PATTERNS[kind](rng, box)
+    nodes = int(rng.choice([65, 129, 257]))
+    mesh = _grid(domain, nodes) if background == "grid" else _strewn(domain, nodes, pattern, rng)
+    shape = pattern((mesh.points - [x0, y0]) / width)
+    shape = (shape - shape.min()) / max(float(np.ptp(shape)), 1e-300)
+    steady, bound = rng.random() < 0.5, width * rng.uniform(0.2, 1.0)
+    largest = width / rng.uniform(5.0, 20.0)
+    while True:
+        share = 1.0 / ratio + (1.0 - 1.0 / ratio) * shape if steady else ratio ** (shape - 1.0)
+        field = SizeField(mesh, largest * share, f"random {kind}")
+        target = preserved(field, options)
+        asked = ideal_count(target, domain)
+        if asked <= most:
+            return field, target, asked
+        if largest < bound:
+            largest *= min(2.0, 1.05 * np.sqrt(asked / most))
+        elif ratio > 4.0:
+            ratio = max(4.0, 0.5 * ratio)
+        else:
+            bound *= 2.0
+
+
+def _grid(domain: Domain, nodes: int) -> BackgroundMesh:
+    x0, y0, x1, y1 = domain.bounds
     step = max(x1 - x0, y1 - y0) / (nodes - 1)
-    grid = Grid(
-        x0, y0, step, step, max(2, int(np.ceil((x1 - x0) / step)) + 1), max(2, int(np.ceil((y1 - y0) / step)) + 1)
-    )
-    background = BackgroundMesh.regular(grid)
-    shape = _PATTERNS[kind](background.points - [x0, y0], max(x1 - x0, y1 - y0), rng, grid)
-    shape = (shape - shape.min()) / max(np.ptp(shape), 1e-300)
-    largest = max(x1 - x0, y1 - y0) / rng.uniform(5.0, 20.0)
-    sizes = largest * ratio ** (shape - 1.0)
-    # a background cannot hold a valley narrower than its cells: keep the smallest size at a quarter of a cell or more
-    return SizeField(background, np.maximum(sizes, 0.25 * step), f"random {kind}")
+    counts = [max(2, int(np.ceil(side / step - 1e-9)) + 1) for side in (x1 - x0, y1 - y0)]
+    return BackgroundMesh.regular(Grid(x0, y0, step, step, *counts))
 
 
-def _points(p: NDArray, width: float, rng: np.random.Generator, grid: Grid) -> NDArray:
-    seeds = rng.uniform(0, 1, (rng.integers(1, 9), 2)) * [grid.dx * (grid.nx - 1), grid.dy * (grid.ny - 1)]
-    distance = np.sqrt(((p[:, None] - seeds) ** 2).sum(axis=2)).min(axis=1)
-    return np.minimum(distance, 0.4 * width) ** rng.uniform(0.3, 1.0)
+def _strewn(domain: Domain, nodes: int, pattern: Pattern, rng: np.random.Generator) -> BackgroundMesh:
+    """Return a triangulation of the domain's box, denser where the pattern is low, down to a thousandth of a cell."""
+    x0, y0, x1, y1 = domain.bounds
+    width = max(x1 - x0, y1 - y0)
+    box = np.array([x1 - x0, y1 - y0]) / width
+    ticks = [np.linspace(0.0, side, max(3, nodes // 8)) for side in box]
+    points = np.stack(np.meshgrid(*ticks), axis=-1).reshape(-1, 2)
+    while len(points) < nodes**2 // 4:
+        value = pattern(points)
+        low = points[np.argsort(value, kind="stable")[: max(64, len(points) // 8)]]
+        near = low[rng.integers(len(low), size=len(points) // 2)]
+        spread = 10.0 ** rng.uniform(-3.0, 0.0, (len(near), 1)) / nodes
+        more = near + rng.normal(size=near.shape) * spread
+        points = np.vstack([points, np.clip(more, 0.0, box)])
+    points = np.unique(np.round(points, 9), axis=0) * width + [x0, y0]
+    triangles = delaunay(points)
+    return BackgroundMesh(points, triangles)
 
 
-def _valleys(p: NDArray, width: float, rng: np.random.Generator, grid: Grid) -> NDArray:
-    out = np.full(len(p), np.inf)
-    for _ in range(rng.integers(1, 4)):
-        angle, offset = rng.uniform(0, np.pi), rng.uniform(-0.3, 0.3) * width
-        out = np.minimum(out, np.abs((p - 0.5 * width) @ [np.cos(angle), np.sin(angle)] - offset))
-    return np.minimum(out, 0.3 * width)
+def _points(rng: np.random.Generator, box: NDArray[np.float64]) -> Pattern:
+    seeds, power = rng.uniform(0, 1, (rng.integers(1, 9), 2)) * box, rng.uniform(0.3, 1.0)
+
+    def value(p: NDArray[np.float64]) -> NDArray[np.float64]:
+        distance = np.min([np.hypot(*(p - seed).T) for seed in seeds], axis=0)
+        return np.minimum(distance, 0.4) ** power
+
+    return value
 
 
-def _spiral(p: NDArray, width: float, rng: np.random.Generator, grid: Grid) -> NDArray:
-    q = p - 0.5 * width
-    radius, angle = np.hypot(*q.T), np.arctan2(q[:, 1], q[:, 0])
-    pitch = width / rng.uniform(3, 7)
-    return np.abs((radius - pitch * angle / (2 * np.pi)) / pitch % 1.0 - 0.5)
+def _valleys(rng: np.random.Generator, box: NDArray[np.float64]) -> Pattern:
+    lines = [(rng.uniform(0, np.pi), rng.uniform(-0.3, 0.3)) for _ in range(rng.integers(1, 4))]
+
+    def value(p: NDArray[np.float64]) -> NDArray[np.float64]:
+        away = [np.abs((p - 0.5 * box) @ [np.cos(angle), np.sin(angle)] - offset) for angle, offset in lines]
+        return np.minimum(np.min(away, axis=0), 0.3)
+
+    return value
 
 
-def _noise(p: NDArray, width: float, rng: np.random.Generator, grid: Grid) -> NDArray:
-    return gaussian_filter(rng.normal(size=(grid.ny, grid.nx)), rng.uniform(4, 20), mode="nearest").ravel()
+def _spiral(rng: np.random.Generator, box: NDArray[np.float64]) -> Pattern:
+    pitch = 1.0 / rng.uniform(3, 7)
+
+    def value(p: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, y = (p - 0.5 * box).T
+        return np.abs((np.hypot(x, y) - pitch * np.arctan2(y, x) / (2 * np.pi)) / pitch % 1.0 - 0.5)
+
+    return value
 
 
-def _plateaus(p: NDArray, width: float, rng: np.random.Generator, grid: Grid) -> NDArray:
-    smooth = _noise(p, width, rng, grid)
-    return np.digitize(smooth, np.quantile(smooth, [0.25, 0.5, 0.75])).astype(float)
+def _noise(rng: np.random.Generator, box: NDArray[np.float64]) -> Pattern:
+    table = gaussian_filter(rng.normal(size=(257, 257)), rng.uniform(4, 20), mode="nearest")
+    return lambda p: map_coordinates(table, 256.0 * p.T[::-1], order=1, mode="nearest")
 
 
-def _steps(p: NDArray, width: float, rng: np.random.Generator, grid: Grid) -> NDArray:
-    angle = rng.uniform(0, np.pi)
-    along = p @ [np.cos(angle), np.sin(angle)]
-    return (along > np.median(along)).astype(float)
+def _plateaus(rng: np.random.Generator, box: NDArray[np.float64]) -> Pattern:
+    smooth = _noise(rng, box)
+    across = np.stack(np.meshgrid(np.linspace(0, box[0], 99), np.linspace(0, box[1], 99)), axis=-1).reshape(-1, 2)
+    levels = np.quantile(smooth(across), np.sort(10.0 ** rng.uniform(-3.0, -0.05, 3)))
+    return lambda p: np.digitize(smooth(p), levels).astype(float)
 
 
-_PATTERNS: dict[str, Callable[[NDArray, float, np.random.Generator, Grid], NDArray]] = {
+def _steps(rng: np.random.Generator, box: NDArray[np.float64]) -> Pattern:
+    angle, offset = rng.uniform(0, np.pi), rng.uniform(-0.2, 0.2)
+    return lambda p: ((p - 0.5 * box) @ [np.cos(angle), np.sin(angle)] > offset).astype(float)
+
+
+_PATTERNS: dict[str, Callable[[np.random.Generator, NDArray[np.float64]], Pattern]] = {
     "points": _points,
     "valleys": _valleys,
     "spiral": _spiral,
