@@ -28,6 +28,10 @@ SECOND_SHARE = 0.9
 """Where the field is no grid, h* of this alpha and share of the factor stands for the minimum within a radius."""
 PLATEAU = 0.3
 """Share of the elements that lie on the floor of the field from which a plateau rules."""
+FLAT = 0.01
+"""Slope below which sizes change by less than this share from one element to the next: a plateau."""
+LEVEL = 0.917
+"""Largest factor on a plateau: where no edge may be longer than the others, none can be shortened by moves."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,16 +89,20 @@ def tightened(
     options = options or TightOptions()
     radius, factor = chosen(reference, target)
     radius = options.radius if options.radius is not None else radius
-    factor = options.factor if options.factor is not None else factor
+    share = np.minimum(factor, np.where(_level(target), LEVEL, 1.0))
+    if options.factor is not None:
+        share = np.full(len(target.sizes), options.factor)
     field = reference.field if isinstance(reference, AnalyticSize) else reference
     if not isinstance(field, SizeField):
         raise InputError(f"{field.label}: only a size field or a formula can be guaranteed; sample it on a grid first")
     monitor.step(0.0, "tightening the field")
     if field.background.grid is not None and field.background.grid == target.background.grid:
         least = _grid_minima(field, radius * target.sizes)
-        return target.with_sizes(np.minimum(target.sizes, factor * least), f"{target.label}, tight")
-    closer = preserved(field, PreserveOptions(alpha=SECOND_SCALE, beta=SECOND_SHARE * factor), monitor=monitor)
-    lower = target.with_sizes(factor * target.sizes)
+        return target.with_sizes(np.minimum(target.sizes, share * least), f"{target.label}, tight")
+    closer = preserved(
+        field, PreserveOptions(alpha=SECOND_SCALE, beta=SECOND_SHARE * float(share.max())), monitor=monitor
+    )
+    lower = target.with_sizes(share * target.sizes)
     return replace(minimum([lower, closer]), label=f"{target.label}, tight")
 
 
@@ -122,6 +130,13 @@ def chosen(reference: SizeFunction, target: SizeField) -> tuple[float, float]:
     if float((slopes * weights).sum() / weights.sum()) > STEEP:
         return 2.0, 0.96
     return 1.5, 0.98
+
+
+def _level(field: SizeField) -> NDArray[np.bool_]:
+    """Return the background nodes whose triangles are all flat."""
+    level = np.ones(len(field.sizes), dtype=bool)
+    level[field.background.triangles[_slopes(field)[0] > FLAT]] = False
+    return level
 
 
 def _slopes(field: SizeField) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

@@ -33,6 +33,17 @@ def test_the_tight_field_lies_below_both_and_above_the_brute_force_minimum() -> 
     assert (tight.sizes[rows] <= np.maximum(0.9 * near, tight.sizes.min()) + 1e-12).all()
 
 
+def test_a_plateau_is_meshed_finer_wherever_it_lies() -> None:
+    background = BackgroundMesh.unit_square_grid(65, 65)
+    away = np.hypot(*(background.points - [0.1, 0.1]).T)
+    field = SizeField(background, np.clip(0.5 * away, 1e-3, 0.05), "a spot on a plateau")
+    target = preserved(field, PreserveOptions())
+    tight = tightened(field, target)
+    level = away > 0.3
+    assert tight.sizes[level] == pytest.approx(0.917 * 0.05)
+    assert (tight.sizes[~level] > 0.917 * target.sizes[~level]).any()
+
+
 def test_a_fine_enough_mesh_is_guaranteed() -> None:
     field = bowl()
     mesh = disturbed(40, 0.35, 2)
