@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,6 +43,10 @@ FINEST, LOWEST = 0.75, 0.5
 CLOSE = 0.93
 LOOKS = 4
 """Elements with R below CLOSE are judged again after every LOOKS sweeps only."""
+LATTICE = 0.5
+"""Share of elements with sizes that others have too from which a mesh is taken for a lattice."""
+SAME = 1e-9
+"""Relative difference up to which sizes are the same."""
 FLAT = 1e-6
 """Shape quality of an element that counts as one without area at a corner."""
 LARGEST_WEIGHT = 1e6
@@ -147,7 +151,7 @@ def guaranteed(
         If the monitor says so.
     """
     options = options or GuaranteeOptions()
-    work = improve(mesh, domain, tight, options.smooth, SubMonitor(monitor, 0.0, 0.6))
+    work = _prepared(mesh, domain, tight, options.smooth, SubMonitor(monitor, 0.0, 0.6))
     judge = Judge(work, reference)
     _aware(work, judge, SubMonitor(monitor, 0.6, 0.7))
     judge = _inserted(work, judge, options.rounds, SubMonitor(monitor, 0.7, 0.85))
@@ -155,6 +159,19 @@ def guaranteed(
     judge.look(np.arange(len(work.quads)), SAFE)
     judge = _inserted(work, judge, options.rounds, SubMonitor(monitor, 0.95, 1.0))
     return work.result(), _report(work, judge)
+
+
+def _prepared(
+    mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothOptions, monitor: Monitor
+) -> Workspace:
+    """Clean up and smooth; a mesh that is mostly lattice by its shapes alone, which leaves the lattice as it is."""
+    work = Workspace(mesh, domain, tight, options)
+    work.aim()
+    sizes = np.sort(work.sizes)
+    same = np.diff(sizes) <= SAME * sizes[:-1]
+    if options.objective != "reciprocal" or same.mean() < LATTICE:
+        return improve(mesh, domain, tight, options, monitor)
+    return improve(mesh, domain, tight, replace(options, objective="shape", rounds=0), monitor)
 
 
 def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:

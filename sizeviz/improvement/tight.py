@@ -2,6 +2,10 @@
 
 An element of size h* may reach over a crest of h* into sizes smaller than its own. The smallest size that the user asks
 for within a few elements bounds what the element may be: h' = min(h*, c min of h within r h*).
+
+Where the user's field has plateaus that hold much of the mesh, a crest is not the trouble: the plateau's elements form a
+lattice, whose edge cannot follow the plateau's, and the irregular elements along it need room. There h' = c h*, and the
+plateau's size is kept a little beyond its edge, so that these elements lie where larger ones would be allowed.
 """
 
 from __future__ import annotations
@@ -23,20 +27,28 @@ if TYPE_CHECKING:
 
 STEEP = 0.15
 """Mean slope of the target, weighted by elements, above which its valleys count as steep."""
+PLATEAU = 0.3
+"""Share of the elements that lie on plateaus of the user's field from which plateaus rule."""
 SECOND_SCALE = 0.75
 SECOND_SHARE = 0.9
-"""Where the field is no grid, h* of this alpha and share of the factor stands for the minimum within a radius."""
-PLATEAU = 0.3
-"""Share of the elements that lie on the floor of the field from which a plateau rules."""
+"""Where the field is no grid, h* of this alpha and share of the factor keeps room in narrow valleys."""
+LEVEL = 0.01
+"""Share of the elements from which a size that the field keeps to is a plateau of its own."""
+SPREADS = (1.5, 1.25, 1.1)
+"""How far beyond a plateau its size may be kept: up to where h* is this much larger; the first that is cheap enough."""
 FLAT = 0.01
-"""Slope below which sizes change by less than this share from one element to the next: a plateau."""
-LEVEL = 0.917
-"""Largest factor on a plateau: where no edge may be longer than the others, none can be shortened by moves."""
+"""Slope below which sizes change by less than this share from one element to the next."""
+ON_FLAT = 0.917
+"""Largest factor on flat ground that does not rule: where no edge may be longer than the others, none can give way."""
+ON_PLATEAUS = 0.96
+"""The factor there."""
+DEAREST = 0.04
+"""Share of elements that this may add."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TightOptions:
-    """How the tight field is made; by default both values are chosen from the field.
+    """How the tight field is made; by default all values are chosen from the field.
 
     Parameters
     ----------
@@ -83,27 +95,73 @@ def tightened(
 
     Raises
     ------
+    InputError
+        If the reference is neither a size field nor a formula with one.
     Cancelled
         If the monitor says so.
     """
     options = options or TightOptions()
-    radius, factor = chosen(reference, target)
-    radius = options.radius if options.radius is not None else radius
-    share = np.minimum(factor, np.where(_level(target), LEVEL, 1.0))
-    if options.factor is not None:
-        share = np.full(len(target.sizes), options.factor)
     field = reference.field if isinstance(reference, AnalyticSize) else reference
     if not isinstance(field, SizeField):
         raise InputError(f"{field.label}: only a size field or a formula can be guaranteed; sample it on a grid first")
     monitor.step(0.0, "tightening the field")
-    if field.background.grid is not None and field.background.grid == target.background.grid:
-        least = _grid_minima(field, radius * target.sizes)
-        return target.with_sizes(np.minimum(target.sizes, share * least), f"{target.label}, tight")
-    closer = preserved(
-        field, PreserveOptions(alpha=SECOND_SCALE, beta=SECOND_SHARE * float(share.max())), monitor=monitor
-    )
+    radius, factor = chosen(target)
+    radius = options.radius if options.radius is not None else radius
+    levels = plateaus(field, target) if options.radius is None and _alike(field, target) else np.empty(0)
+    if len(levels):
+        sizes = (options.factor if options.factor is not None else ON_PLATEAUS) * _spread(target, levels)
+        return target.with_sizes(sizes, f"{target.label}, tight")
+    share = _shares(field, target, factor) if options.factor is None else np.full(len(target.sizes), options.factor)
+    if field.background.grid is not None and _alike(field, target):
+        sizes = np.minimum(target.sizes, share * _grid_minima(field, radius * target.sizes))
+        return target.with_sizes(sizes, f"{target.label}, tight")
+    # h* itself bounds the minimum within alpha h* from below; a second scale stands for the floors of narrow valleys
     lower = target.with_sizes(share * target.sizes)
-    return replace(minimum([lower, closer]), label=f"{target.label}, tight")
+    second = PreserveOptions(alpha=SECOND_SCALE, beta=SECOND_SHARE * float(share.max()))
+    both = minimum([lower, preserved(field, second, monitor=monitor)])
+    return replace(both, label=f"{target.label}, tight")
+
+
+def _shares(field: SizeField, target: SizeField, factor: float) -> NDArray[np.float64]:
+    """Return the factor at each node: smaller where both fields are flat, since moves shorten no edge there."""
+    share = np.full(len(target.sizes), factor)
+    if _alike(field, target):
+        level = np.ones(len(share), dtype=bool)
+        for one in (field, target):
+            level[one.background.triangles[_slopes(one) > FLAT]] = False
+        share[level] = min(factor, ON_FLAT)
+    return share
+
+
+def _alike(field: SizeField, target: SizeField) -> bool:
+    """Say whether both fields live on the same triangles."""
+    return field.background is target.background or (
+        field.background.grid is not None and field.background.grid == target.background.grid
+    )
+
+
+def plateaus(field: SizeField, target: SizeField) -> NDArray[np.float64]:
+    """Return the sizes of the user's plateaus, ascending, where they hold so much of the mesh that they rule it."""
+    corner = field.sizes[field.background.triangles]
+    flat = (corner[:, 0] == corner[:, 1]) & (corner[:, 0] == corner[:, 2])
+    asked = _asked(target)
+    total = asked.sum()
+    levels, which = np.unique(corner[flat, 0], return_inverse=True)
+    share = np.bincount(which, asked[flat], len(levels)) / total
+    return levels[share > LEVEL] if share.sum() > PLATEAU else np.empty(0)
+
+
+def _spread(target: SizeField, levels: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the nodal sizes with each plateau's kept as far beyond it as is cheap."""
+    before = _asked(target).sum()
+    for reach in SPREADS:
+        below = np.searchsorted(levels, target.sizes * (1.0 + 1e-9), side="right") - 1
+        level = levels[np.maximum(below, 0)]
+        near = (below >= 0) & (target.sizes < reach * level)
+        wider = target.with_sizes(np.where(near, np.minimum(level, target.sizes), target.sizes))
+        if _asked(wider).sum() <= (1.0 + DEAREST) * before:
+            return wider.sizes
+    return target.sizes
 
 
 def _grid_minima(field: SizeField, reach: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -121,31 +179,25 @@ def _grid_minima(field: SizeField, reach: NDArray[np.float64]) -> NDArray[np.flo
     return least.ravel()
 
 
-def chosen(reference: SizeFunction, target: SizeField) -> tuple[float, float]:
-    """Return the radius and factor that suit a field: its slopes, and how much of it lies on its floor."""
-    slopes, weights, lowest = _slopes(target)
-    on_floor = float(weights[lowest <= 1.02 * target.sizes.min()].sum() / weights.sum())
-    if on_floor > PLATEAU:
-        return 0.75, 0.917
-    if float((slopes * weights).sum() / weights.sum()) > STEEP:
-        return 2.0, 0.96
-    return 1.5, 0.98
+def chosen(target: SizeField) -> tuple[float, float]:
+    """Return the radius and factor that suit a field without ruling plateaus, by its mean slope."""
+    asked = _asked(target)
+    return (2.0, 0.96) if float((_slopes(target) * asked).sum() / asked.sum()) > STEEP else (1.5, 0.98)
 
 
-def _level(field: SizeField) -> NDArray[np.bool_]:
-    """Return the background nodes whose triangles are all flat."""
-    level = np.ones(len(field.sizes), dtype=bool)
-    level[field.background.triangles[_slopes(field)[0] > FLAT]] = False
-    return level
-
-
-def _slopes(field: SizeField) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return each background triangle's slope, number of elements asked for, and mean size."""
+def _slopes(field: SizeField) -> NDArray[np.float64]:
+    """Return the slope of each background triangle."""
     corner = field.background.points[field.background.triangles]
     size = field.sizes[field.background.triangles]
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     twice = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     da, db = size[:, 1] - size[:, 0], size[:, 2] - size[:, 0]
-    gradient = np.hypot(da * b[:, 1] - db * a[:, 1], db * a[:, 0] - da * b[:, 0]) / twice
-    mean = size.mean(axis=1)
-    return gradient, 0.5 * twice / mean**2, mean
+    return np.hypot(da * b[:, 1] - db * a[:, 1], db * a[:, 0] - da * b[:, 0]) / np.abs(twice)
+
+
+def _asked(field: SizeField) -> NDArray[np.float64]:
+    """Return about how many elements each background triangle asks for."""
+    corner = field.background.points[field.background.triangles]
+    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    mean = field.sizes[field.background.triangles].mean(axis=1)
+    return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / mean**2

@@ -40,8 +40,19 @@ def test_a_plateau_is_meshed_finer_wherever_it_lies() -> None:
     target = preserved(field, PreserveOptions())
     tight = tightened(field, target)
     level = away > 0.3
-    assert tight.sizes[level] == pytest.approx(0.917 * 0.05)
-    assert (tight.sizes[~level] > 0.917 * target.sizes[~level]).any()
+    assert tight.sizes[level] == pytest.approx(0.96 * 0.05)
+    assert (tight.sizes <= 0.96 * target.sizes * (1 + 1e-12)).all()
+
+
+def test_what_is_flat_without_ruling_is_meshed_finer_too() -> None:
+    background = BackgroundMesh.unit_square_grid(65, 65)
+    away = np.abs(background.points[:, 0] - 0.1)
+    field = SizeField(background, np.clip(0.3 * away, 1e-2, 0.25), "a valley beside a plateau")
+    target = preserved(field, PreserveOptions())
+    tight = tightened(field, target)
+    level = away > 0.98 * away.max()
+    assert (tight.sizes[level] <= 0.917 * field.sizes[level] * (1 + 1e-12)).all()
+    assert (tight.sizes > 0.95 * target.sizes).any()
 
 
 def test_a_fine_enough_mesh_is_guaranteed() -> None:
