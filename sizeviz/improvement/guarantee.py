@@ -161,9 +161,7 @@ def guaranteed(
     return work.result(), _report(work, judge)
 
 
-def _prepared(
-    mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothOptions, monitor: Monitor
-) -> Workspace:
+def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
     """Clean up and smooth; a mesh that is mostly lattice by its shapes alone, which leaves the lattice as it is."""
     work = Workspace(mesh, domain, tight, options)
     work.aim()

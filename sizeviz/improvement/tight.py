@@ -4,8 +4,8 @@ An element of size h* may reach over a crest of h* into sizes smaller than its o
 for within a few elements bounds what the element may be: h' = min(h*, c min of h within r h*).
 
 Where the user's field has plateaus that hold much of the mesh, a crest is not the trouble: the elements of a plateau
-form a lattice, whose edge cannot follow the plateau's, and the irregular elements along it need room. There h' = c h*, and the
-plateau's size is kept a little beyond its edge, so that these elements lie where larger ones would be allowed.
+form a lattice, whose edge cannot follow the plateau's, and the irregular elements along it need room. There h' = c h*,
+and the plateau's size is kept a little beyond its edge, so that these elements lie where larger ones would do.
 """
 
 from __future__ import annotations
