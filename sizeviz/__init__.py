@@ -36,6 +36,7 @@ _PUBLIC: dict[str, str] = {
     "StudyOptions": "sizeviz.study",
     "run": "sizeviz.study",
     "save_comparison": "sizeviz.scene",
+    "save_page": "sizeviz.scene",
     "save_picture": "sizeviz.scene",
 }
 

@@ -24,7 +24,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "adapt": ("sizeviz.cli.adapt:adapt", "The adaptive process: each mesh is the background of the next."),
     "paper": ("sizeviz.cli.paper:paper", "Every figure and table of the paper, our numbers beside the published ones."),
     "field": ("sizeviz.cli.field:field", "Write the processed size field only."),
-    "shot": ("sizeviz.cli.shot:shot", "A picture or vector figure of a mesh."),
+    "shot": ("sizeviz.cli.shot:shot", "A picture, vector figure or interactive page of a study or a mesh."),
     "examples": ("sizeviz.cli.gallery:examples", "List the examples."),
     "doctor": ("sizeviz.cli.doctor:doctor", "Versions, OpenGL, fonts; what is missing, and the line that installs it."),
 }

@@ -1,8 +1,9 @@
-"""From results to pictures: pure composition, one renderer, colour maps, still pictures and vector figures."""
+"""From results to pictures: pure composition, one renderer, colour maps, still pictures, vector figures, pages."""
 
 from sizeviz.scene.camera import Camera2D
 from sizeviz.scene.comparison import save_comparison
 from sizeviz.scene.compose import compose
+from sizeviz.scene.page import save_page
 from sizeviz.scene.picture import save_picture
 from sizeviz.scene.renderer import Renderer
 from sizeviz.scene.scale import ColorScale, ratio_scale
@@ -20,5 +21,6 @@ __all__ = [
     "compose",
     "ratio_scale",
     "save_comparison",
+    "save_page",
     "save_picture",
 ]

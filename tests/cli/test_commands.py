@@ -12,6 +12,7 @@ from PIL import Image
 from sizeviz.cli import run_command_line
 from sizeviz.files import read_field, read_mesh
 from sizeviz.sizing import BackgroundMesh, SizeField
+from sizeviz.sources import load
 
 VALLEY = "expr:min(0.1, max(0.02, abs(x - 0.4 - 0.2*y)))"
 
@@ -100,6 +101,59 @@ def test_shot_draws_vectors(compared: Path, tmp_path: Path) -> None:
     assert run_command_line(["shot", str(compared / "mesh-gradient-limiting.vtu"), "-o", str(out)]) == 0
     text = out.read_text()
     assert "<path" in text and "<image" not in text
+
+
+def test_shot_makes_a_page_of_a_mesh(compared: Path, tmp_path: Path) -> None:
+    out = tmp_path / "shot.html"
+    assert run_command_line(["shot", str(compared / "mesh-guaranteed.vtu"), "-o", str(out), "--color-by", "size"]) == 0
+    text = out.read_text("utf-8")
+    assert '"quantity":"size"' in text and '"ratio"' in text and "<title>mesh-guaranteed.vtu" in text
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from sizeviz.study import Study, run
+    from sizeviz.study.storage import StudyFile, write_study
+
+    path = tmp_path_factory.mktemp("saved") / "valley.sizeviz"
+    return write_study(path, StudyFile(run(Study(load(VALLEY)), ("none", "size-preserving"))))
+
+
+@pytest.mark.parametrize("quantity", ["ratio", "quality", "size", "prescribed", "target"])
+def test_shot_draws_a_study(saved: Path, tmp_path: Path, quantity: str) -> None:
+    assert run_command_line(["shot", str(saved), "-o", str(tmp_path / "shot.svg"), "--color-by", quantity]) == 0
+    assert "<path" in (tmp_path / "shot.svg").read_text() and "Size preserving" in (tmp_path / "shot.svg").read_text()
+
+
+@pytest.mark.gl
+def test_shot_draws_pixels_of_a_study(saved: Path, tmp_path: Path) -> None:
+    assert run_command_line(["shot", str(saved), "-o", str(tmp_path / "shot.png")]) == 0
+    with Image.open(tmp_path / "shot.png") as picture:
+        assert picture.size[0] == 1400
+
+
+def test_shot_makes_a_page_of_a_study_and_picks_a_run(saved: Path, tmp_path: Path) -> None:
+    assert run_command_line(["shot", str(saved), "-o", str(tmp_path / "p.html")]) == 0
+    text = (tmp_path / "p.html").read_text("utf-8")
+    assert "Field as given" in text and "Size preserving" in text
+    assert run_command_line(["shot", str(saved), "-o", str(tmp_path / "p.svg"), "--method", "none"]) == 0
+    assert "Field as given" in (tmp_path / "p.svg").read_text()
+
+
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        (["--method", "guaranteed"], "holds no mesh of guaranteed; it has none, size-preserving"),
+        (["--source", "ring"], "is a study, which has a source of its own"),
+        (["--color-by", "error"], "cannot colour by error: no image to measure against"),
+    ],
+)
+def test_shot_says_what_a_study_cannot_show(
+    saved: Path, tmp_path: Path, capsys: pytest.CaptureFixture, typed: list[str], words: str
+) -> None:
+    assert run_command_line(["shot", str(saved), "-o", str(tmp_path / "p.svg"), *typed]) == 2
+    assert words in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.gl
