@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sizeviz.errors import InputError
 from sizeviz.improvement import _worst_kernels
+from sizeviz.improvement._workspace import longer
+from sizeviz.sizing import SizeField
 from sizeviz.sizing.analytic import AnalyticSize
 
 if TYPE_CHECKING:
@@ -20,11 +23,11 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 """R up to 1 plus this counts as correct."""
 NEAR = 0.97
-"""R against the piecewise-linear field above which a formula's own minimum is looked for: the two differ by less."""
-FEW = 16
-"""A list of nodes shorter than the mesh by this factor is not looked for in all elements."""
+"""R as estimated above which a formula's own minimum is looked for."""
 SAFE = 0.9
 """The same for the last look, which must not miss an element."""
+MOVED = 0.02
+"""Share of its longest edge that an element may move before a formula's minimum over it is looked for again."""
 
 
 def longest_edges(points: NDArray[np.float64], quads: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -37,34 +40,71 @@ def longest_edges(points: NDArray[np.float64], quads: NDArray[np.int32]) -> NDAr
 class Judge:
     """Longest edges against the smallest size over each element, exact for the reference.
 
+    A formula's minimum is dear. Its ratio to that of the piecewise-linear field is kept with each element, and serves
+    as an estimate until the element has moved by ``MOVED`` of its size; ``verify`` trusts no estimate.
+
     Parameters
     ----------
     work : Workspace
-        Whose elements are judged, where they are now.
+        Whose elements are judged, where they are now; elements whose first node is -1 are dead.
     reference : SizeFunction
         What they are judged against.
+
+    Raises
+    ------
+    InputError
+        If the reference is neither a size field nor a formula with one.
     """
 
     def __init__(self, work: Workspace, reference: SizeFunction) -> None:
         self.work, self.reference = work, reference
-        self.field = reference.field if isinstance(reference, AnalyticSize) else reference
-        self.least = np.empty(len(work.quads))
-        self.ratio = np.empty(len(work.quads))
-        self.quality = np.empty(len(work.quads))
-        self.look(np.arange(len(work.quads)))
+        field = reference.field if isinstance(reference, AnalyticSize) else reference
+        if not isinstance(field, SizeField):
+            raise InputError(f"{field.label}: only a size field or a formula can be guaranteed")
+        self.field, self.exact = field, field is reference
+        n = len(work.quads)
+        self.least, self.ratio, self.quality = np.empty(n), np.zeros(n), np.ones(n)
+        self.share = np.ones(n)
+        self.seen = np.full((0 if self.exact else n, 4, 2), np.inf)
+        self.look(self.alive)
 
-    def look(self, rows: NDArray[np.int64], near: float = NEAR) -> None:
-        """Judge some elements again; a formula's own minimum is dear, so only where R comes ``near`` to 1."""
-        work = self.work
-        self._measure(rows, self.field)
-        if self.field is not self.reference:
-            self._measure(rows[self.ratio[rows] > near], self.reference)
+    @property
+    def alive(self) -> NDArray[np.int64]:
+        """Elements that are not dead."""
+        return np.flatnonzero(self.work.quads[:, 0] >= 0)
+
+    def lengthen(self) -> None:
+        """Make room for the elements that the workspace has been lengthened by."""
+        more = len(self.work.quads) - len(self.least)
+        for name, value in (("least", 1.0), ("ratio", 0.0), ("quality", 1.0), ("share", 1.0)):
+            setattr(self, name, longer(getattr(self, name), more, value))
+        if not self.exact:
+            self.seen = np.concatenate([self.seen, np.full((more, 4, 2), np.inf)])
+
+    def look(self, rows: NDArray[np.int64], near: float = NEAR, moved: float = MOVED) -> None:
+        """Judge some elements again; a formula's own minimum only where R comes ``near`` to 1 and they ``moved``."""
+        work, threads = self.work, self.work.options.threads
+        quads = work.quads[rows]
+        longest = longest_edges(work.xy, quads)
+        self.least[rows] = self.share[rows] * self.field.min_over(work.xy, quads, threads=threads)
+        self.ratio[rows] = longest / self.least[rows]
+        if not self.exact:
+            away = np.abs(work.xy[quads] - self.seen[rows]).max(axis=(1, 2))
+            doubtful = (self.ratio[rows] > near) & (away > moved * longest)
+            self._look_closely(rows[doubtful], longest[doubtful])
         _worst_kernels.qualities(rows, work.xy, work.quads, self.quality)
 
-    def _measure(self, rows: NDArray[np.int64], size: SizeFunction) -> None:
-        work, quads = self.work, self.work.quads[rows]
-        self.least[rows] = size.min_over(work.xy, quads, threads=work.options.threads)
-        self.ratio[rows] = longest_edges(work.xy, quads) / self.least[rows]
+    def _look_closely(self, rows: NDArray[np.int64], longest: NDArray[np.float64]) -> None:
+        work = self.work
+        quads = work.quads[rows]
+        least = self.reference.min_over(work.xy, quads, threads=work.options.threads)
+        self.share[rows] *= least / self.least[rows]
+        self.least[rows], self.ratio[rows] = least, longest / least
+        self.seen[rows] = work.xy[quads]
+
+    def verify(self) -> None:
+        """Judge every element that comes near to 1 by the reference itself, where it is now."""
+        self.look(self.alive, SAFE, 0.0)
 
     @property
     def wrong(self) -> NDArray[np.int64]:
@@ -92,12 +132,11 @@ class Judge:
 
     def touched(self, nodes: NDArray[np.integer]) -> NDArray[np.int64]:
         """Return the elements around some nodes."""
-        if FEW * len(nodes) < len(self.work.xy):
-            filled = np.arange(self.work.ring.shape[1]) < self.work.count[nodes, None]
-            return np.unique(self.work.ring[nodes][filled] >> 2).astype(np.int64)
-        mark = np.zeros(len(self.work.xy), dtype=bool)
-        mark[nodes] = True
-        return np.flatnonzero(mark[self.work.quads].any(axis=1))
+        filled = np.arange(self.work.ring.shape[1]) < self.work.count[nodes, None]
+        rows = self.work.ring[nodes][filled] >> 2
+        mark = np.zeros(len(self.work.quads), dtype=bool)
+        mark[rows] = True
+        return np.flatnonzero(mark)
 
     def rings(self, rows: NDArray[np.int64], count: int) -> NDArray[np.integer]:
         """Return the nodes of some elements and of ``count`` rings of elements around them."""

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.errors import InputError
-from sizeviz.improvement._conform import SAFE, Judge
+from sizeviz.improvement._conform import Judge
 from sizeviz.improvement._workspace import STUCK, Workspace
 from sizeviz.improvement.chain import improve
-from sizeviz.improvement.cleanup import Cleaner
+from sizeviz.improvement.mend import Mender
 from sizeviz.improvement.options import SmoothOptions
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 
@@ -28,16 +28,12 @@ SLACK = 0.97
 WEIGHT = 100.0
 """Weight of the edge term over the whole mesh."""
 AWARE_SWEEPS = 12
-LIFTS = 3
-"""Passes that raise the worst elements; each knows the limits that the one before left."""
-FEW = 0.002
+FEW = 0.005
 """Share of wrong elements below which smoothing around them is cheaper than everywhere."""
 REPAIRS = 2
 """Rounds of smoothing before elements are inserted where edges are still too long."""
-FIRM = 0.99
-"""What an insertion aims at; one that just met the limits would leave nothing for its neighbours."""
-HARD = 0.93
-"""The limit, over the smallest size, around elements that several rounds of insertions have left."""
+PURSUITS = 4
+"""How often the whole repair is begun again, because the last, exact look found an element wrong."""
 FINEST, LOWEST = 0.75, 0.5
 """Quality that an insertion must leave, in the first round and in the last."""
 CLOSE = 0.93
@@ -63,7 +59,7 @@ class GuaranteeOptions:
     rounds : int
         Rounds of local repair, 0 or more. Default 16.
     polish : int
-        Guarded sweeps over the whole mesh at the end, 0 or more. Default 4.
+        Passes that raise the worst elements at the end, 0 or more. Default 3.
 
     Raises
     ------
@@ -73,7 +69,7 @@ class GuaranteeOptions:
 
     smooth: SmoothOptions = field(default_factory=SmoothOptions)
     rounds: int = 16
-    polish: int = 4
+    polish: int = 3
 
     def __post_init__(self) -> None:
         for name, value in (("rounds", self.rounds), ("polish", self.polish)):
@@ -154,11 +150,17 @@ def guaranteed(
     work = _prepared(mesh, domain, tight, options.smooth, SubMonitor(monitor, 0.0, 0.6))
     judge = Judge(work, reference)
     _aware(work, judge, SubMonitor(monitor, 0.6, 0.7))
-    judge = _inserted(work, judge, options.rounds, SubMonitor(monitor, 0.7, 0.85))
-    _polish(work, judge, options, SubMonitor(monitor, 0.85, 0.95))
-    judge.look(np.arange(len(work.quads)), SAFE)
-    judge = _inserted(work, judge, options.rounds, SubMonitor(monitor, 0.95, 1.0))
-    return work.result(), _report(work, judge)
+    mender = Mender(work, judge)
+    floor = options.smooth.floor
+    for n in range(PURSUITS):
+        part = SubMonitor(monitor, 0.7 + 0.3 * n / PURSUITS, 0.7 + 0.3 * (n + 1) / PURSUITS)
+        _conformed(work, judge, mender, options.rounds, part)
+        _raised(judge, mender, floor, options.polish)
+        judge.verify()
+        if not len(judge.wrong):
+            break
+    report = _report(work, judge)
+    return work.result(), report
 
 
 def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
@@ -186,28 +188,29 @@ def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
     monitor.step(1.0)
 
 
-def _inserted(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> Judge:
-    """Repair by smoothing and, where that leaves edges too long, by more elements; return a judge of the result."""
+def _conformed(work: Workspace, judge: Judge, mender: Mender, rounds: int, monitor: Monitor) -> None:
+    """Repair by smoothing and, where that leaves edges too long, by operations."""
     for n in range(rounds):
         part = SubMonitor(monitor, n / rounds, (n + 1) / rounds)
         _repair(work, judge, min(REPAIRS + n, rounds), part)
         wrong = judge.wrong
         if not len(wrong):
             break
-        judge.limit(np.arange(len(work.quads)), FIRM)
-        nodes: NDArray[np.integer] = np.unique(work.quads[wrong])
-        if n:
-            # what an insertion left a little too long would not call for another; it may be needed next to it
-            nodes = judge.rings(wrong, 1)
-            judge.limit(judge.touched(judge.rings(wrong, 1 + n // 4)), SLACK if n < 4 else HARD)
-        lowest = max(LOWEST, FINEST - 0.05 * n)
-        done = Cleaner(work, whole=True).insert(nodes, lowest)
-        work.compact()
-        judge = Judge(work, judge.reference)
-        if not done and lowest == LOWEST:
-            _repair(work, judge, rounds, part)
+        # what an operation left a little too long would not call for another; it may be needed next to it
+        nodes = judge.rings(wrong, min(n, 2))
+        mender.mend(nodes, FINEST, max(LOWEST, FINEST - 0.05 * n), n > 1, part)
+
+
+def _raised(judge: Judge, mender: Mender, floor: float, passes: int) -> None:
+    """Raise the worst elements, first by moves, then by operations, and make no element wrong."""
+    work = judge.work
+    for _ in range(passes):
+        judge.limit(judge.alive, 0.9999)
+        judge.guarded(lambda: work.lift(floor), floor)
+        low = np.flatnonzero(judge.quality < floor)
+        if not len(low) or not mender.mend(judge.rings(low, 1), floor, LOWEST, True):
             break
-    return judge
+        _repair(work, judge, REPAIRS, SILENT)
 
 
 def _repair(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> None:
@@ -230,21 +233,6 @@ def _repair(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> Non
     monitor.step(1.0)
 
 
-def _polish(work: Workspace, judge: Judge, options: GuaranteeOptions, monitor: Monitor) -> None:
-    """Smooth the whole mesh once more, and raise its worst elements, taking back what makes any element wrong."""
-    work.weight = WEIGHT
-    everywhere = np.arange(len(work.quads))
-    floor = options.smooth.floor
-    for n in range(options.polish):
-        monitor.step(n / (options.polish + 1), "polishing")
-        judge.limit(everywhere, 0.995)
-        judge.guarded(work.sweep, floor)
-    for _ in range(LIFTS):
-        judge.limit(everywhere, 0.9999)
-        judge.guarded(lambda: work.lift(floor), floor)
-    monitor.step(1.0)
-
-
 def _report(work: Workspace, judge: Judge) -> GuaranteeReport:
     flat = np.flatnonzero(judge.quality <= FLAT)
     wrong = np.union1d(judge.wrong, flat)
@@ -258,4 +246,5 @@ def _report(work: Workspace, judge: Judge) -> GuaranteeReport:
         k = int(np.argmax(edges))
         held = work.slide[corner[k]] == STUCK and work.slide[corner[(k + 1) % 4]] == STUCK
         reasons.append("with an edge between two fixed nodes" if held else "that no move could shorten")
-    return GuaranteeReport(len(work.quads), wrong, judge.ratio[wrong], tuple(reasons))
+    rank = np.cumsum(work.quads[:, 0] >= 0) - 1
+    return GuaranteeReport(len(judge.alive), rank[wrong], judge.ratio[wrong], tuple(reasons))
