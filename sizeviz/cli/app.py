@@ -25,6 +25,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "paper": ("sizeviz.cli.paper:paper", "Every figure and table of the paper, our numbers beside the published ones."),
     "field": ("sizeviz.cli.field:field", "Write the processed size field only."),
     "shot": ("sizeviz.cli.shot:shot", "A picture, vector figure or interactive page of a study or a mesh."),
+    "film": ("sizeviz.cli.film:film", "An adaptive process as a film, or both methods while alpha turns."),
     "examples": ("sizeviz.cli.gallery:examples", "List the examples."),
     "doctor": ("sizeviz.cli.doctor:doctor", "Versions, OpenGL, fonts; what is missing, and the line that installs it."),
 }

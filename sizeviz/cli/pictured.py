@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from sizeviz.cli.options import FieldOptions, loaded
 from sizeviz.conformity import element_sizes, judged
 from sizeviz.errors import InputError
 from sizeviz.scene import Subject
+from sizeviz.scene.subject import StoredSubject
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,23 +24,6 @@ if TYPE_CHECKING:
 
 MEASURES: tuple[Measure, ...] = ("mean-edge", "sqrt-area", "max-edge")
 """The measures of an element's size."""
-
-
-@dataclass(frozen=True, eq=False)
-class StoredSubject(Subject):
-    """A mesh whose R was judged when its file was written.
-
-    Parameters
-    ----------
-    ratio : (Q,) float64
-        R of each element, as stored.
-    """
-
-    ratio: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-
-    def element_values(self, quantity: Quantity, measure: Measure) -> NDArray[np.float64] | None:
-        """Return the stored R, or what follows from the mesh."""
-        return self.ratio if quantity == "ratio" else super().element_values(quantity, measure)
 
 
 def stored(content: MeshFile, file: Path, quantity: Quantity, measure: Measure) -> tuple[Subject, Measure]:

@@ -218,8 +218,8 @@ def _mesh_layers(
     failing = _failing(subject, view)
     if len(failing):
         layers += _failing_lines(mesh, failing, scale.colors(values[failing]), view.dark)
-    if selected is not None and len(selected):
-        chosen = selected[selected < mesh.n_quads]
+    chosen = np.empty(0, dtype=np.intp) if selected is None else selected[selected < mesh.n_quads]
+    if len(chosen):  # a selection can outlive the mesh it was made in
         layers.append(LineLayer("selected", mesh.points, outline_segments(mesh.quads[chosen]), SELECTED_LINE, 2.0))
     return layers, scale
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from sizeviz.errors import InputError
 from sizeviz.scene.imaging import interpolation_errors
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from sizeviz.conformity import Measure, MeshReport
@@ -85,6 +86,23 @@ class Subject:
                 quantity, self.report.ratios[measure]
             )
         return None if quantity == "ratio" else _measured(self.mesh, quantity, measure)
+
+
+@dataclass(frozen=True, eq=False)
+class StoredSubject(Subject):
+    """A mesh whose R was judged when its file was written.
+
+    Parameters
+    ----------
+    ratio : (Q,) float64
+        R of each element, as stored.
+    """
+
+    ratio: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+
+    def element_values(self, quantity: Quantity, measure: Measure) -> NDArray[np.float64] | None:
+        """Return the stored R, or what follows from the mesh."""
+        return self.ratio if quantity == "ratio" else super().element_values(quantity, measure)
 
 
 def subject_of(study: Study, method: str) -> Subject:

@@ -146,3 +146,9 @@ def test_words_under_a_pane_are_broken_to_its_width(width: float) -> None:
     lines, size = wrapped(words, width, 25)
     assert " ".join(lines) == words and len(lines) <= 2 and size <= 25
     assert all(text_width(line, size) <= width for line in lines)
+
+
+def test_a_selection_outlives_the_mesh_it_was_made_in() -> None:
+    shown = subject(12)
+    assert len(layer(compose(shown, ViewState(), selected=np.array([3, 900])), "selected").segments) == 4
+    assert layer(compose(shown, ViewState(), selected=np.array([900, 901])), "selected") is None, "nothing is no layer"
