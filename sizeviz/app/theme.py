@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -60,19 +61,35 @@ ICONS = (Path(__file__).parent / "icons").as_posix()
 APPLIED = "sizeviz-dark"
 """Property of the application that says which theme it has."""
 
+TYPE_SCALE = "sizeviz-type-scale"
+"""Property of the application that says how much larger than usual its words are."""
+
 THEMES = {"light": LIGHT, "dark": DARK}
 """The themes by name."""
 
 
-def apply_theme(app: QApplication, theme: Theme) -> None:
-    """Give the whole application a theme; what it has already is left alone, for polishing a window takes a while."""
-    if app.property(APPLIED) == theme.dark:
+def apply_theme(app: QApplication, theme: Theme, type_scale: float | None = None) -> None:
+    """Give the whole application a theme; what it has already is left alone, for polishing a window takes a while.
+
+    Parameters
+    ----------
+    app : QApplication
+        Which.
+    theme : Theme
+        Its colours.
+    type_scale : float, optional
+        How much larger than usual words are, as for an audience; as before by default.
+    """
+    before = float(app.property(TYPE_SCALE) or 1.0)
+    scale = before if type_scale is None else type_scale
+    if app.property(APPLIED) == theme.dark and scale == before:
         return
     if app.property(APPLIED) is None:
         app.setStyle("Fusion")
     app.setProperty(APPLIED, theme.dark)
     app.setPalette(palette(theme))
-    app.setStyleSheet(style_sheet(theme))
+    app.setProperty(TYPE_SCALE, scale)
+    app.setStyleSheet(style_sheet(theme, scale))
 
 
 def palette(theme: Theme) -> QPalette:
@@ -100,9 +117,9 @@ def palette(theme: Theme) -> QPalette:
     return colors
 
 
-def style_sheet(theme: Theme) -> str:
+def style_sheet(theme: Theme, type_scale: float = 1.0) -> str:
     """Return the style sheet of the whole window."""
-    sheet = _SHEET
+    sheet = re.sub(r"(\d+)pt", lambda size: f"{int(size[1]) * type_scale:g}pt", _SHEET)
     for name in ("window", "panel", "raised", "border", "text", "muted", "accent", "on_accent", "tint", "good", "bad",
                  "warn"):  # fmt: skip
         sheet = sheet.replace(f"@{name};", f"{getattr(theme, name)};")
@@ -187,6 +204,10 @@ QFrame#toast[level="warning"] { border-left-color: @warn; }
 QLabel[role="muted"] { color: @muted; }
 QLabel[role="title"] { font-size: 19pt; font-weight: 300; }
 QLabel[role="heading"] { font-weight: 600; }
+QLabel[role="lesson"] { font-size: 11pt; }
+QLabel#equation { background: @tint; border-radius: 8px; padding: 9px 12px; font-size: 12pt; }
+QLabel#task { border: none; border-left: 3px solid @accent; padding: 2px 0 2px 10px; }
+QFrame#card QScrollArea, QWidget#told { background: transparent; border: none; }
 QLabel[role="good"] { color: @good; font-weight: 600; }
 QLabel[role="bad"] { color: @bad; font-weight: 600; }
 QLabel#badge { background: @warn; color: @window; border-radius: 8px; padding: 1px 8px; font-size: 8pt;

@@ -27,6 +27,7 @@ class Welcome(QWidget):
     file_requested = Signal()
     canvas_requested = Signal()
     recover_requested = Signal(object)
+    lesson_requested = Signal()
 
     def __init__(
         self,
@@ -76,12 +77,15 @@ class Welcome(QWidget):
         row = QHBoxLayout()
         row.setSpacing(10)
         row.addStretch(1)
-        file, canvas = QPushButton("Open file…"), QPushButton("Blank canvas")
+        file, canvas, lesson = QPushButton("Open file…"), QPushButton("Blank canvas"), QPushButton("New here? A lesson")
+        lesson.setToolTip("What a size field is, and why meshes miss it: six short steps on a line")
+        lesson.clicked.connect(self.lesson_requested)
         file.setProperty("primary", True)
         file.clicked.connect(self.file_requested)
         canvas.clicked.connect(self.canvas_requested)
         row.addWidget(file)
         row.addWidget(canvas)
+        row.addWidget(lesson)
         row.addStretch(1)
         return row
 

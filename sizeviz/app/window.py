@@ -31,6 +31,7 @@ from sizeviz.app.inspect.histogram import HistogramPanel
 from sizeviz.app.inspect.judge import StatisticsPanel, WorstPanel
 from sizeviz.app.inspect.look import Inspector
 from sizeviz.app.intents import connect_actions, connect_panels
+from sizeviz.app.lessons.hub import Lessons
 from sizeviz.app.palette import CommandPalette, ShortcutOverlay
 from sizeviz.app.panels.controls import Section
 from sizeviz.app.panels.options import JudgePanel, MeshPanel, SizePanel, SmoothPanel
@@ -101,6 +102,7 @@ class MainWindow(QMainWindow):
         self.overlay = ShortcutOverlay(self.actions_, self)
         connect_panels(self)
         connect_actions(self)
+        self.lessons = Lessons(self)
         self.set_theme(self.theme)
         self._laid_out = self.settings.restore_layout(self)
         if not self._laid_out:
@@ -218,7 +220,7 @@ class MainWindow(QMainWindow):
 
     def show_study(self, study: Study) -> None:
         """Bring panels and panes to a study."""
-        if self.pages.currentWidget() is not self.board:
+        if self.pages.currentWidget() is self.welcome:
             self.pages.setCurrentWidget(self.board)
             docks = [self.pipeline_dock, self.inspector_dock]
             for dock in docks:
@@ -269,6 +271,7 @@ class MainWindow(QMainWindow):
         self.board.dark = theme.dark
         for histogram in self.histograms:
             histogram.set_theme(theme)
+        self.lessons.set_theme(theme)
         self.board.refresh()
 
     # -- files dropped, window closed ------------------------------------------------------------------------------
@@ -294,6 +297,7 @@ class MainWindow(QMainWindow):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Stop the worker, remember the layout, free VTK; in this order, so that nothing is used after it is gone."""
         self.controller.jobs.shut_down()
+        self.lessons.close()
         self.files.close()
         for sender in (self.controller.store.stack, self.controller.store, self.controller, self.controller.jobs):
             sender.blockSignals(True)  # what is torn down from here on is nobody's news

@@ -14,6 +14,7 @@ import numpy as np
 
 from sizeviz.errors import InputError
 from sizeviz.geometry.arrays import read_only
+from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sizing.edges import edge_graph
 
 if TYPE_CHECKING:
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from sizeviz.sizing.options import PreserveOptions
 
     Edges = Callable[[int], Iterable[tuple[int, float]]]
+
+STEPS_A_WORD = 2048
+"""Nodes looked at between two steps of the monitor."""
 
 Case = Literal["i", "ii", "iii", "iv", "v"]
 """The five cases of section 3."""
@@ -97,7 +101,7 @@ def case_of(radius: float, allowed: float, distance: float) -> Case:
     return "iv" if distance <= radius else "v"
 
 
-def ball_at(field: SizeField, node: int, options: PreserveOptions) -> BallTrace:
+def ball_at(field: SizeField, node: int, options: PreserveOptions, monitor: Monitor = SILENT) -> BallTrace:
     """Return how the ball shrinks at one node of a field's background.
 
     Parameters
@@ -108,11 +112,15 @@ def ball_at(field: SizeField, node: int, options: PreserveOptions) -> BallTrace:
         Index of the node.
     options : PreserveOptions
         ``distance='edges-as-printed'`` takes line 18 as printed, anything else r = d.
+    monitor : Monitor
+        Told how much of the ball has been looked at; may cancel.
 
     Raises
     ------
     InputError
         If there is no such node.
+    Cancelled
+        If the monitor says so.
     """
     _check_node(node, len(field.sizes))
     begins, ends, lengths = edge_graph(field.background)
@@ -123,7 +131,7 @@ def ball_at(field: SizeField, node: int, options: PreserveOptions) -> BallTrace:
 
     centre = field.background.points[node]
     places, sizes = _candidates(field, centre, options.alpha)
-    return _trace(field.sizes, node, edges, centre, places, sizes, options)
+    return _trace(field.sizes, node, edges, centre, places, sizes, options, monitor)
 
 
 def ball_on_line(field: LineField, node: int, options: PreserveOptions) -> BallTrace:
@@ -152,16 +160,21 @@ def _trace(
     places: NDArray[np.float64],
     place_sizes: NDArray[np.float64],
     options: PreserveOptions,
+    monitor: Monitor = SILENT,
 ) -> BallTrace:
     start = options.alpha * float(sizes[origin])
-    steps = tuple(_steps(sizes, origin, edges, options))
+    steps: list[BallStep] = []
+    for step in _steps(sizes, origin, edges, options):
+        if len(steps) % STEPS_A_WORD == 0:
+            monitor.step(min(step.distance / step.before, 1.0), "Shrinking the ball")
+        steps.append(step)
     radius = steps[-1].after
     value = np.maximum(place_sizes, np.sqrt(((places - centre) ** 2).sum(axis=1)) / options.alpha)
     best = int(value.argmin())
     return BallTrace(
         centre=read_only(centre.copy()),
         start=start,
-        steps=steps,
+        steps=tuple(steps),
         radius=radius,
         size=options.beta * radius / options.alpha,
         blocking=read_only(places[best].copy()),

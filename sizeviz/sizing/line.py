@@ -6,7 +6,7 @@ Ruiz-Gironés, Roca, Sarrate, 22nd International Meshing Roundtable, 2013, DOI 1
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -18,6 +18,13 @@ if TYPE_CHECKING:
 
 MOST_NODES = 100_000
 """Nodes after which an advancing front is given up."""
+
+
+class LineSizes(Protocol):
+    """Anything that prescribes a size along a line."""
+
+    def at(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Return the size at positions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,10 +99,59 @@ def preserved_on_line(field: LineField, alpha: float, beta: float, x: ArrayLike)
     return beta * best
 
 
-def advanced(field: LineField, start: float, stop: float) -> NDArray[np.float64]:
+@dataclass(frozen=True, eq=False)
+class LimitedLine:
+    """The limited sizes of a line, exact wherever they are asked for.
+
+    Parameters
+    ----------
+    field : LineField
+        The sizes given.
+    epsilon : float
+        Largest slope.
+    """
+
+    field: LineField
+    epsilon: float
+
+    def at(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Return the limited size at positions."""
+        return limited_on_line(self.field, self.epsilon, x)
+
+
+@dataclass(frozen=True, eq=False)
+class PreservedLine:
+    """The preserved sizes of a line, exact wherever they are asked for.
+
+    Parameters
+    ----------
+    field : LineField
+        The sizes given.
+    alpha, beta : float
+        Radius of the ball in elements, and scale of the size.
+    """
+
+    field: LineField
+    alpha: float
+    beta: float = 1.0
+
+    def at(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Return the preserved size at positions."""
+        return preserved_on_line(self.field, self.alpha, self.beta, x)
+
+
+def advanced(field: LineSizes, start: float, stop: float, *, stretch_last: bool = True) -> NDArray[np.float64]:
     """Return the nodes of an advancing front: each lies one size, as prescribed at the one before, beyond that.
 
-    The last node is ``stop``; where the front would leave less than half an element before it, that node is left out.
+    Parameters
+    ----------
+    field : LineSizes
+        Sizes, in model units.
+    start, stop : float
+        First and last node.
+    stretch_last : bool
+        Whether a rest of less than half an element before ``stop`` is given to the element before it. Otherwise it
+        remains an element of its own: shorter than asked for, never longer.
 
     Raises
     ------
@@ -106,13 +162,13 @@ def advanced(field: LineField, start: float, stop: float) -> NDArray[np.float64]
         raise InputError(f"line from {start} to {stop}: it must end after it begins")
     nodes = [float(start)]
     while True:
-        size = float(field.at(nodes[-1]))
+        size = float(field.at([nodes[-1]])[0])
         if nodes[-1] + size >= stop:
             break
         nodes.append(nodes[-1] + size)
         if len(nodes) > MOST_NODES:
             raise InputError(f"line: more than {MOST_NODES:,} nodes; ask for larger sizes")
-    if len(nodes) > 1 and stop - nodes[-1] < 0.5 * float(field.at(nodes[-1])):
+    if stretch_last and len(nodes) > 1 and stop - nodes[-1] < 0.5 * float(field.at([nodes[-1]])[0]):
         nodes.pop()
     return read_only(np.array([*nodes, float(stop)]))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from qtpy.QtCore import QPointF, Qt, Signal
 from qtpy.QtGui import QColor, QFontMetrics, QPainter, QPen, QPolygonF
@@ -47,6 +47,13 @@ class Mark:
     pinned: bool = False
 
 
+class Overlay(Protocol):
+    """Something drawn over a pane that is neither cursor nor mark, such as a lesson's ball."""
+
+    def paint(self, glass: Glass, painter: QPainter) -> None:
+        """Draw, with the glass to turn model units into pixels and to write labels."""
+
+
 class Glass(QWidget):
     """Takes the mouse, draws what moves with it."""
 
@@ -60,6 +67,7 @@ class Glass(QWidget):
         self.ring: Ring | None = None
         self.marks: dict[str, Mark] = {}
         self.path: list[tuple[float, float]] = []
+        self.overlay: Overlay | None = None
         self._pressed: QPointF | None = None
         self._last = QPointF()
         self._panning = False
@@ -100,6 +108,8 @@ class Glass(QWidget):
             self._surface.stroke_ended.emit(*self._model(at))
         elif self._panning and clicked and event.button() == Qt.MouseButton.LeftButton:
             self._surface.clicked.emit(*self._model(at))
+        elif clicked and event.button() == Qt.MouseButton.RightButton and not self._surface.tool_active:
+            self._surface.menu_requested.emit(*self._model(at))
         self._panning = False
         self._pressed = None
         self.unsetCursor()
@@ -132,10 +142,12 @@ class Glass(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw marks, the path of a line or polygon, and the ring."""
-        if not (self.marks or self.path or self.ring):
+        if not (self.marks or self.path or self.ring or self.overlay):
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.overlay is not None:
+            self.overlay.paint(self, painter)
         for mark in self.marks.values():
             self._draw_mark(painter, mark)
         if self.path:
@@ -145,28 +157,29 @@ class Glass(QWidget):
         painter.end()
 
     def _draw_mark(self, painter: QPainter, mark: Mark) -> None:
-        shape = QPolygonF([self._pixel(x, y) for x, y in mark.corners])
-        self._twice(painter, lambda: painter.drawPolygon(shape), 2.4 if mark.pinned else 1.6)
+        shape = QPolygonF([self.pixel(x, y) for x, y in mark.corners])
+        self.twice(painter, lambda: painter.drawPolygon(shape), 2.4 if mark.pinned else 1.6)
         box = shape.boundingRect()
         if mark.pinned and max(box.width(), box.height()) < 14:
-            self._twice(painter, lambda: painter.drawEllipse(box.center(), 11.0, 11.0), 2.0)
+            self.twice(painter, lambda: painter.drawEllipse(box.center(), 11.0, 11.0), 2.0)
         if mark.label:
             width = QFontMetrics(self.font()).horizontalAdvance(mark.label) + 12.0
             below = max(0.5 * box.height(), 11.0) + 9.0
-            self._draw_label(painter, box.center() + QPointF(-0.5 * width, below), mark.label)
+            self.draw_label(painter, box.center() + QPointF(-0.5 * width, below), mark.label)
 
     def _draw_path(self, painter: QPainter) -> None:
-        line = QPolygonF([self._pixel(x, y) for x, y in self.path])
-        self._twice(painter, lambda: painter.drawPolyline(line), 1.6)
+        line = QPolygonF([self.pixel(x, y) for x, y in self.path])
+        self.twice(painter, lambda: painter.drawPolyline(line), 1.6)
 
     def _draw_ring(self, painter: QPainter, ring: Ring) -> None:
-        centre = self._pixel(ring.x, ring.y)
+        centre = self.pixel(ring.x, ring.y)
         reach = max(ring.radius * self.height() / self._surface.camera.height, 2.0)
-        self._twice(painter, lambda: painter.drawEllipse(centre, reach, reach), 1.6)
+        self.twice(painter, lambda: painter.drawEllipse(centre, reach, reach), 1.6)
         if ring.label:
-            self._draw_label(painter, centre + QPointF(min(reach, 0.4 * self.width()) * 0.72 + 8.0, 16.0), ring.label)
+            self.draw_label(painter, centre + QPointF(min(reach, 0.4 * self.width()) * 0.72 + 8.0, 16.0), ring.label)
 
-    def _draw_label(self, painter: QPainter, at: QPointF, words: str) -> None:
+    def draw_label(self, painter: QPainter, at: QPointF, words: str) -> None:
+        """Write words on a dark plate whose upper left corner is at a pixel, wholly within the pane."""
         metrics = QFontMetrics(self.font())
         width, height = metrics.horizontalAdvance(words) + 12.0, metrics.height() + 6.0
         x = min(max(at.x(), 2.0), self.width() - width - 2.0)
@@ -178,7 +191,7 @@ class Glass(QWidget):
         painter.drawText(QPointF(x + 6.0, y + 3.0 + metrics.ascent()), words)
 
     @staticmethod
-    def _twice(painter: QPainter, draw: Callable[[], object], width: float) -> None:
+    def twice(painter: QPainter, draw: Callable[[], object], width: float) -> None:
         """Draw a line that shows on any ground: white upon black."""
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(QColor(10, 12, 15, 190), width + 2.0))
@@ -189,7 +202,8 @@ class Glass(QWidget):
     def _model(self, at: QPointF) -> tuple[float, float]:
         return self._surface.camera.to_model(at.x(), at.y(), self.width(), self.height())
 
-    def _pixel(self, x: float, y: float) -> QPointF:
+    def pixel(self, x: float, y: float) -> QPointF:
+        """Return the pixel over a model point."""
         return QPointF(*self._surface.camera.to_pixel(x, y, self.width(), self.height()))
 
 
@@ -208,6 +222,7 @@ class Surface(QWidget):
     hovered = Signal(float, float)
     left = Signal()
     clicked = Signal(float, float)
+    menu_requested = Signal(float, float)
     activated = Signal()
     stroke_began = Signal(float, float)
     stroke_moved = Signal(float, float)

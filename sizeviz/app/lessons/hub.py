@@ -1,0 +1,131 @@
+"""Where lessons meet the window: pages, panels and commands; the only module of theirs that knows it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from qtpy.QtCore import QObject
+from qtpy.QtWidgets import QApplication, QMenu, QToolButton
+
+from sizeviz.app.lessons.line_page import LineController, LinePage
+from sizeviz.app.theme import apply_theme
+
+if TYPE_CHECKING:
+    from qtpy.QtWidgets import QWidget
+
+    from sizeviz.app.lessons.page import LessonPage
+    from sizeviz.app.theme import Theme
+    from sizeviz.app.window import MainWindow
+
+PRESENTER_SCALE = 1.5
+"""How much larger words are in presenter mode."""
+
+LEARN: tuple[str, ...] = ("lesson-line",)
+"""Commands in the menu Learn, in order."""
+
+
+class Lessons(QObject):
+    """Opens lessons in a window and takes it back to where it was.
+
+    Parameters
+    ----------
+    window : MainWindow
+        Which.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        self._page_before: QWidget | None = None
+        self._hidden: list[QWidget] = []
+        self.type_scale = 1.0
+        self.line = LineController(self)
+        self._line_page: LinePage | None = None
+        self._add_menu()
+        on = window.actions_.on
+        on("lesson-line", self.open_line)
+        on("presenter", self.set_presenter)
+        window.welcome.lesson_requested.connect(self.open_line)
+        window.controller.opened.connect(lambda spec: self.leave())
+
+    # -- pages -----------------------------------------------------------------------------------------------------
+
+    @property
+    def line_page(self) -> LinePage:
+        """The lesson on a line, made when it is first needed."""
+        if self._line_page is None:
+            self._line_page = LinePage(self.line)
+            self._adopt(self._line_page)
+        return self._line_page
+
+    def open_line(self) -> None:
+        """Open the lesson on a line."""
+        self._open(self.line_page)
+
+    def leave(self) -> None:
+        """Go back to what was there before the lesson."""
+        window, before = self._window, self._page_before
+        if before is None:
+            return
+        if before is window.welcome and window.controller.study is not None:
+            before = window.board
+        window.pages.setCurrentWidget(before)
+        for dock in self._hidden or self._docks() if before is window.board else []:
+            dock.show()
+        self._page_before, self._hidden = None, []
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the window's colours."""
+        for page in self._pages():
+            page.set_theme(theme, self.type_scale)
+
+    def set_presenter(self, on: bool) -> None:
+        """Make everything legible from the last row, or as it was."""
+        self.type_scale = PRESENTER_SCALE if on else 1.0
+        apply_theme(QApplication.instance(), self._window.theme, self.type_scale)
+        self.set_theme(self._window.theme)
+
+    def close(self) -> None:
+        """Stop what moves by itself, and give the application its usual type back."""
+        if self._line_page is not None:
+            self._line_page.transport.stop()
+        if self.type_scale != 1.0:
+            apply_theme(QApplication.instance(), self._window.theme, 1.0)
+
+    # -- inside ----------------------------------------------------------------------------------------------------
+
+    def _pages(self) -> list[LessonPage]:
+        return [page for page in (self._line_page,) if page is not None]
+
+    def _adopt(self, page: LessonPage) -> None:
+        page.set_theme(self._window.theme, self.type_scale)
+        page.left.connect(self.leave)
+        self._window.pages.addWidget(page)
+
+    def _open(self, page: LessonPage) -> None:
+        pages = self._window.pages
+        if pages.currentWidget() not in self._pages():
+            self._page_before = pages.currentWidget()
+            self._hidden = [dock for dock in self._docks() if not dock.isHidden()]
+            for dock in self._hidden:
+                dock.hide()
+        pages.setCurrentWidget(page)
+        page.take_focus()
+
+    def _docks(self) -> list[QWidget]:
+        return [self._window.pipeline_dock, self._window.inspector_dock]
+
+    def _add_menu(self) -> None:
+        window = self._window
+        self.menu = QMenu(window)
+        for name in LEARN:
+            self.menu.addAction(window.actions_[name])
+        self.menu.addSeparator()
+        self.menu.addAction(window.actions_["presenter"])
+        button = QToolButton()
+        button.setText("Learn")
+        button.setAccessibleName("Lessons and explanations")
+        button.setMenu(self.menu)
+        button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        window.toolbar.insertWidget(window.actions_["theme"], button)
+        self.button = button
