@@ -23,7 +23,7 @@ from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates, 
 from sizeviz.improvement._cavity_kernels import core_nodes, exchange, restore_links, save_links
 from sizeviz.improvement._jit import allocating, compiled
 from sizeviz.improvement._star_kernels import gather, node_step
-from sizeviz.improvement._worst_kernels import lift_free, lift_sliding, quad_quality
+from sizeviz.improvement._worst_kernels import lift_free, lift_sliding, quad_quality, star_quality
 from sizeviz.sizing._minimum_kernels import quad_min
 
 EDGE_WEIGHT = 200.0
@@ -43,6 +43,8 @@ REGULAR = 0.002
 """What one unit of valence energy weighs."""
 WORTH = 0.01
 """Least gain for which the connectivity is changed."""
+LIFTS = 2
+"""Passes that raise the qualities around an operation."""
 STRETCH = 1.4
 """Longest edge over target that raising a quality may leave, unless it was longer."""
 SPLITS, ALL = np.int64(0), np.int64(1)
@@ -99,21 +101,22 @@ def relax_held(nodes, n, n_core, region, n_region, patch, aims, law, rails, star
 
 
 @compiled
-def lift_region(region, n, patch, aims, rails, star, floor):
-    """Move the nodes of elements below ``floor`` to where the worst around them is best, as far as limits let them."""
-    xy, quads = patch[0], patch[1]
-    for _ in range(2):
+def lift_nodes(nodes, n, patch, aims, rails, star, floor):
+    """Move nodes beside elements below ``floor`` to where the worst around them is best, as far as limits let them."""
+    xy = patch[0]
+    for _ in range(LIFTS):
         for i in range(n):
-            if quad_quality(region[i], xy, quads) >= floor:
+            v = nodes[i]
+            kind = rails[1][v]
+            if kind < -1 or patch[3][v] == 0:
                 continue
-            for k in range(4):
-                v = quads[region[i], k]
-                m = gather(v, patch, aims[2], aims[4], star)
-                kind = rails[1][v]
-                if kind == -1:
-                    lift_free(v, xy, star, m, 1.0 / STRETCH**2)
-                elif kind >= 0:
-                    lift_sliding(v, xy, star, m, 1.0 / STRETCH**2, rails[0], kind, rails[2])
+            m = gather(v, patch, aims[2], aims[4], star)
+            if star_quality(star, m, xy[v, 0], xy[v, 1], 0.0)[0] >= floor:
+                continue
+            if kind == -1:
+                lift_free(v, xy, star, m, 1.0 / STRETCH**2)
+            else:
+                lift_sliding(v, xy, star, m, 1.0 / STRETCH**2, rails[0], kind, rails[2])
 
 
 @compiled
@@ -167,7 +170,7 @@ def trial(op, keep, patch, topo, marks, aims, rails, law, searcher, share, goal,
         if n_after <= len(after):
             relax_held(nodes, n, n_core, after, n_after, patch, aims, law, rails, star, share, searcher)
             limit_elements(after, n_after, patch, aims[4], share, searcher)
-            lift_region(after, n_after, patch, aims, rails, star, goal[0])
+            lift_nodes(nodes, n, patch, aims, rails, star, goal[0])
             limit_elements(after, n_after, patch, aims[4], share, searcher)
             demerit, quality = grade(after, n_after, patch, aims[4], goal[0])
             gain = before - demerit - REGULAR * op[3]
