@@ -10,6 +10,18 @@ from importlib import import_module
 __version__ = "0.1.0"
 
 _PUBLIC: dict[str, str] = {
+    # ten functions for notebooks
+    "load": "sizeviz.api",
+    "paint": "sizeviz.api",
+    "limit": "sizeviz.api",
+    "preserve": "sizeviz.api",
+    "mesh": "sizeviz.api",
+    "smooth": "sizeviz.api",
+    "report": "sizeviz.api",
+    "show": "sizeviz.api",
+    "screenshot": "sizeviz.api",
+    "adapt": "sizeviz.api",
+    # the values they take and return, and the verbs beneath
     "Domain": "sizeviz.geometry",
     "QuadMesh": "sizeviz.geometry",
     "BackgroundMesh": "sizeviz.sizing",
@@ -31,7 +43,6 @@ _PUBLIC: dict[str, str] = {
     "write_mesh": "sizeviz.files",
     "Source": "sizeviz.sources",
     "examples": "sizeviz.sources",
-    "load": "sizeviz.sources",
     "Study": "sizeviz.study",
     "StudyOptions": "sizeviz.study",
     "run": "sizeviz.study",

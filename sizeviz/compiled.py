@@ -115,6 +115,23 @@ def drop_stale() -> list[str]:
     return stale
 
 
+def prepared(monitor: Monitor) -> Monitor:
+    """Compile the kernels if this machine has not yet; return what is left of the monitor for the work itself.
+
+    The compiler holds the interpreter for seconds, so it works in processes of its own: on the worker of the window it
+    would freeze the window.
+
+    Raises
+    ------
+    Cancelled
+        If the monitor says so; what was compiled until then is kept.
+    """
+    if are_compiled():
+        return monitor
+    compile_kernels(SubMonitor(monitor, 0.0, 0.8))
+    return SubMonitor(monitor, 0.8, 1.0)
+
+
 class _Prefixed:
     """A monitor that says what its steps are good for."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
+from sizeviz.compiled import prepared
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 
 if TYPE_CHECKING:
@@ -122,25 +123,6 @@ class PipelineEngine:
         from sizeviz.study import StudyOptions
 
         return StudyOptions().with_comparable_slope()
-
-
-def prepared(monitor: Monitor) -> Monitor:
-    """Compile the kernels if this machine has not yet; return what is left of the monitor for the work itself.
-
-    The compiler holds the interpreter for seconds, so it works in processes of its own: on the worker of the window it
-    would freeze the window.
-
-    Raises
-    ------
-    Cancelled
-        If the monitor says so; what was compiled until then is kept.
-    """
-    from sizeviz.compiled import are_compiled, compile_kernels
-
-    if are_compiled():
-        return monitor
-    compile_kernels(SubMonitor(monitor, 0.0, 0.8))
-    return SubMonitor(monitor, 0.8, 1.0)
 
 
 def title_of(name: str) -> str:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 from sizeviz.cli.options import loaded, study_options
 from sizeviz.cli.tables import print_report
 from sizeviz.cli.terminal import notice, on_terminal, progress, warn_about_beta
-from sizeviz.compiled import are_compiled, compile_kernels
+from sizeviz.compiled import are_compiled
+from sizeviz.compiled import prepared as compiled_first
 from sizeviz.errors import MissingDependencyError
 from sizeviz.files import output_folder, replacing, write_mesh
-from sizeviz.monitor import Monitor, SubMonitor
 from sizeviz.study import Study, run
 from sizeviz.study.report import mesh_arrays, report_of
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from sizeviz.cli.options import PipelineOptions
+    from sizeviz.monitor import Monitor
 
 
 def carried_out(
@@ -77,13 +78,10 @@ def carried_out(
 
 
 def prepared(monitor: Monitor) -> Monitor:
-    """Compile the kernels if this machine has not yet; return what is left of the monitor for the work itself."""
-    if are_compiled():
-        return monitor
-    if not on_terminal():
+    """Compile the kernels if this machine has not yet, and say so; return what is left of the monitor."""
+    if not are_compiled() and not on_terminal():
         notice("compiling the kernels, once on this machine; this takes up to a minute")
-    compile_kernels(SubMonitor(monitor, 0.0, 0.8))
-    return SubMonitor(monitor, 0.8, 1.0)
+    return compiled_first(monitor)
 
 
 def _picture(study: Study, folder: Path, methods: Sequence[str], options: PipelineOptions, comparison: bool) -> None:

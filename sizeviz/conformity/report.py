@@ -172,6 +172,18 @@ class MeshReport:
             "quality deviation": quality["std"],
         }
 
+    def _repr_html_(self) -> str:
+        """Return the table that a notebook shows, a column for each measure."""
+        head = "".join(f"<th>{measure.replace('-', ' ')}</th>" for measure in MEASURES)
+        tables = [self.table(measure) for measure in MEASURES]
+        lines = []
+        for name in tables[0]:
+            values = [table[name] for table in tables]
+            words = [f"{v:,}" if isinstance(v, int) else f"{v:.4g}" for v in values]
+            cells = "".join(f'<td style="text-align: right">{word}</td>' for word in words)
+            lines.append(f"<tr><th style='text-align: left'>{name}</th>{cells}</tr>")
+        return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
+
 
 def _key(measure: str) -> str:
     return measure.replace("-", "_")
