@@ -15,5 +15,11 @@ def main() -> None:
     sys.exit(run_command_line(sys.argv[1:]))
 
 
+def gui_main() -> None:
+    """Open the window with what was named on the command line: the entry that opens no terminal where that matters."""
+    sys.argv.insert(1, "gui")
+    main()
+
+
 if __name__ == "__main__":
     main()

@@ -66,7 +66,7 @@ def application() -> Any:
     """Return the Qt application, made once; colours and sizes follow the screen's scale."""
     os.environ.setdefault("QT_API", "pyqt5")
     from qtpy.QtCore import QCoreApplication, Qt
-    from qtpy.QtGui import QGuiApplication
+    from qtpy.QtGui import QGuiApplication, QIcon
     from qtpy.QtWidgets import QApplication
 
     existing = QApplication.instance()
@@ -81,6 +81,8 @@ def application() -> Any:
     app = QApplication([sys.argv[0] if sys.argv else "sizeviz"])
     app.setApplicationName("sizeviz")
     app.setApplicationDisplayName("sizeviz")
+    app.setDesktopFileName("sizeviz")
+    app.setWindowIcon(QIcon(str(Path(__file__).with_name("icons") / "sizeviz.svg")))
     return app
 
 
