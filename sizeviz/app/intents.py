@@ -233,6 +233,8 @@ def _connect_keys(window: MainWindow) -> None:
 def _escape(window: MainWindow) -> None:
     if window.controller.stroke is not None:
         window.tool.abort()
+    elif window.lessons.escape():
+        return
     elif window.tool.active:
         window.actions_["paint"].setChecked(False)
     else:

@@ -207,7 +207,8 @@ QLabel[role="heading"] { font-weight: 600; }
 QLabel[role="lesson"] { font-size: 11pt; }
 QLabel#equation { background: @tint; border-radius: 8px; padding: 9px 12px; font-size: 12pt; }
 QLabel#task { border: none; border-left: 3px solid @accent; padding: 2px 0 2px 10px; }
-QFrame#card QScrollArea, QWidget#told { background: transparent; border: none; }
+QWidget#explain { background: @panel; }
+QFrame#card QScrollArea, QWidget#explain QStackedWidget, QWidget#told { background: transparent; border: none; }
 QLabel[role="good"] { color: @good; font-weight: 600; }
 QLabel[role="bad"] { color: @bad; font-weight: 600; }
 QLabel#badge { background: @warn; color: @window; border-radius: 8px; padding: 1px 8px; font-size: 8pt;

@@ -45,8 +45,10 @@ class Moment:
         Where it lies, in model units.
     size : float
         What it asks for, h(y).
-    radius, before : float
-        r after and before the step.
+    radius : float
+        r after the step.
+    skipped : int
+        How many nodes were looked at since the moment told before.
     candidate : float
         beta r / alpha: h* if the ball stopped here.
     blocking : (D,) float64
@@ -59,7 +61,7 @@ class Moment:
     place: NDArray[np.float64]
     size: float
     radius: float
-    before: float
+    skipped: int
     candidate: float
     blocking: NDArray[np.float64]
 
@@ -76,7 +78,7 @@ class Moment:
     @property
     def shrank(self) -> bool:
         """Whether this step made the ball smaller."""
-        return self.radius < self.before
+        return self.step.after < self.step.before
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +123,7 @@ class BallStory:
         number = min(max(number, 0), self.count - 1)
         row = self.told[number]
         step = self.trace.steps[row]
-        before = self.trace.steps[self.told[number - 1]].after if number else self.trace.start
+        skipped = row - self.told[number - 1] - 1 if number else 0
         return Moment(
             number=number,
             last=self.count - 1,
@@ -129,7 +131,7 @@ class BallStory:
             place=self.places[step.node],
             size=float(self.sizes[step.node]),
             radius=step.after,
-            before=before,
+            skipped=skipped,
             candidate=self.options.beta * step.after / self.options.alpha,
             blocking=self.places[self._blocking[row]],
         )
@@ -163,7 +165,8 @@ def headline(story: BallStory, moment: Moment) -> str:
     if moment.is_start:
         return f"The place itself asks for {moment.size:.4g}. The largest ball it allows is tried first."
     if moment.shrank:
-        return f"A smaller size lies within reach: the ball shrinks from {moment.before:.4g} to {moment.radius:.4g}."
+        shrinks = f"from {moment.step.before:.4g} to {moment.radius:.4g}"
+        return f"A smaller size lies within reach: the ball shrinks {shrinks}."
     return "This node asks for nothing smaller. The ball keeps its size."
 
 
@@ -179,8 +182,10 @@ def story_words(story: BallStory, moment: Moment) -> str:
             "Now look at the nodes around, the nearest first."
         )
         return text if story.count > 1 else text + " " + end_words(story)
+    later = f"{moment.skipped:,} nodes later: node" if moment.skipped else "Node"
     text = (
-        f"Node at {place_words(moment.place)}, d = {moment.step.distance:.4g} away. It asks for h = {moment.size:.4g}, "
+        f"{later} at {place_words(moment.place)}, d = {moment.step.distance:.4g} away. It asks for h = "
+        f"{moment.size:.4g}, "
         f"which allows a ball of r′ = α·h = {moment.step.allowed:.4g}. {RULES[moment.step.case]}"
     )
     return text + ("<br><br>" + end_words(story) if moment.is_end else "")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import QObject
 from qtpy.QtWidgets import QApplication, QMenu, QToolButton
 
+from sizeviz.app.lessons.in_panes import PaneLessons
 from sizeviz.app.lessons.line_page import LineController, LinePage
 from sizeviz.app.theme import apply_theme
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 PRESENTER_SCALE = 1.5
 """How much larger words are in presenter mode."""
 
-LEARN: tuple[str, ...] = ("lesson-line",)
+LEARN: tuple[str, ...] = ("lesson-line", "why", "explain")
 """Commands in the menu Learn, in order."""
 
 
@@ -41,9 +42,12 @@ class Lessons(QObject):
         self.type_scale = 1.0
         self.line = LineController(self)
         self._line_page: LinePage | None = None
+        self.panes = PaneLessons(window)
         self._add_menu()
         on = window.actions_.on
         on("lesson-line", self.open_line)
+        on("why", self.panes.ask)
+        on("explain", self.panes.explain)
         on("presenter", self.set_presenter)
         window.welcome.lesson_requested.connect(self.open_line)
         window.controller.opened.connect(lambda spec: self.leave())
@@ -84,11 +88,20 @@ class Lessons(QObject):
         self.type_scale = PRESENTER_SCALE if on else 1.0
         apply_theme(QApplication.instance(), self._window.theme, self.type_scale)
         self.set_theme(self._window.theme)
+        self.panes.set_presenter(on, self.type_scale)
+
+    def escape(self) -> bool:
+        """Put away what a lesson has put over the panes, or leave its page; return whether there was either."""
+        if self._window.pages.currentWidget() in self._pages():
+            self.leave()
+            return True
+        return self.panes.close_ball()
 
     def close(self) -> None:
         """Stop what moves by itself, and give the application its usual type back."""
         if self._line_page is not None:
             self._line_page.transport.stop()
+        self.panes.panel.transport.stop()
         if self.type_scale != 1.0:
             apply_theme(QApplication.instance(), self._window.theme, 1.0)
 

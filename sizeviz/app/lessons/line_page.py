@@ -181,11 +181,11 @@ class LinePage(LessonPage):
         column = QVBoxLayout(told)
         column.setContentsMargins(18, 14, 18, 8)
         column.setSpacing(10)
-        for widget in (self.count, self.heading, self.words, self.equation):
+        for widget in (self.count, self.heading, self.transport, self.words, self.equation):
             column.addWidget(widget)
         for control in self.controls.values():
             column.addWidget(control)
-        for widget in (self.transport, self.terms, self.verdict, self.task):
+        for widget in (self.terms, self.verdict, self.task):
             column.addWidget(widget)
         column.addStretch(1)
         scroll = QScrollArea()

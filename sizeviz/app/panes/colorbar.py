@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QFontMetricsF, QImage, QPainter, QPen
 from qtpy.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QFrame, QSpinBox, QWidget
 
@@ -55,7 +56,13 @@ class ColorBar(QWidget):
 
     def sizeHint(self) -> QSize:
         """Return room for the strip and one line of ticks."""
-        return QSize(200, BAR_HEIGHT + 27)
+        return QSize(200, BAR_HEIGHT + 10 + math.ceil(QFontMetricsF(self.font()).height()))
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Make room for larger type."""
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self.updateGeometry()
 
     def minimumSizeHint(self) -> QSize:
         """Return the same height at any width."""
