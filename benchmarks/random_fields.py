@@ -7,15 +7,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates
 
+from sizeviz.geometry import Domain
 from sizeviz.geometry.delaunay import delaunay
-from sizeviz.sizing import BackgroundMesh, Grid, PreserveOptions, SizeField, ideal_count, preserved
+from sizeviz.meshing import MeshOptions, generated
+from sizeviz.sizing import (
+    BackgroundMesh,
+    Grid,
+    LimitOptions,
+    PreserveOptions,
+    SizeField,
+    ideal_count,
+    limited,
+    preserved,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
-
-    from sizeviz.geometry import Domain
 
     Pattern = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
@@ -54,8 +63,8 @@ def random_field(
     options : PreserveOptions
         How it is preserved.
     background : str
-        One of ``BACKGROUNDS``: a regular grid of 65 to 257 nodes along the longer side, or as many nodes strewn
-        more densely where sizes are small.
+        One of ``BACKGROUNDS``: a regular grid of 65 to 257 nodes along the longer side, or triangles
+        graded towards the smallest sizes, down to a hundredth of the widest.
 
     Returns
     -------
@@ -69,7 +78,7 @@ def random_field(
     box = np.array([x1 - x0, y1 - y0]) / width
     pattern = _PATTERNS[kind](rng, box)
     nodes = int(rng.choice([65, 129, 257]))
-    mesh = _grid(domain, nodes) if background == "grid" else _strewn(domain, nodes, pattern, rng)
+    mesh = _grid(domain, nodes) if background == "grid" else _graded(domain, nodes, pattern)
     shape = pattern((mesh.points - [x0, y0]) / width)
     shape = (shape - shape.min()) / max(float(np.ptp(shape)), 1e-300)
     steady, bound = rng.random() < 0.5, width * rng.uniform(0.2, 1.0)
@@ -96,23 +105,20 @@ def _grid(domain: Domain, nodes: int) -> BackgroundMesh:
     return BackgroundMesh.regular(Grid(x0, y0, step, step, *counts))
 
 
-def _strewn(domain: Domain, nodes: int, pattern: Pattern, rng: np.random.Generator) -> BackgroundMesh:
-    """Return a triangulation of the domain's box, denser where the pattern is low, down to a thousandth of a cell."""
-    x0, y0, x1, y1 = domain.bounds
+def _graded(domain: Domain, nodes: int, pattern: Pattern) -> BackgroundMesh:
+    """Return a triangulation of the domain's box whose edges grow up to a hundredfold with the pattern."""
+    grid = _grid(domain, nodes)
+    x0, y0, x1, y1 = grid.bounds
     width = max(x1 - x0, y1 - y0)
-    box = np.array([x1 - x0, y1 - y0]) / width
-    ticks = [np.linspace(0.0, side, max(3, nodes // 8)) for side in box]
-    points = np.stack(np.meshgrid(*ticks), axis=-1).reshape(-1, 2)
-    while len(points) < nodes**2 // 4:
-        value = pattern(points)
-        low = points[np.argsort(value, kind="stable")[: max(64, len(points) // 8)]]
-        near = low[rng.integers(len(low), size=len(points) // 2)]
-        spread = 10.0 ** rng.uniform(-3.0, 0.0, (len(near), 1)) / nodes
-        more = near + rng.normal(size=near.shape) * spread
-        points = np.vstack([points, np.clip(more, 0.0, box)])
-    points = np.unique(np.round(points, 9), axis=0) * width + [x0, y0]
-    triangles = delaunay(points)
-    return BackgroundMesh(points, triangles)
+    shape = pattern((grid.points - [x0, y0]) / width)
+    shape = (shape - shape.min()) / max(float(np.ptp(shape)), 1e-300)
+    spacing = SizeField(grid, 8.0 * width / nodes * 100.0 ** (shape - 1.0))
+    while True:
+        graded = limited(spacing, LimitOptions(epsilon=0.3))
+        if ideal_count(graded, box := Domain.rectangle(x0, y0, x1, y1)) < nodes**2 / 4:
+            points = generated(box, graded, MeshOptions(scale=1.0)).points
+            return BackgroundMesh(points, delaunay(points))
+        spacing = spacing.with_sizes(np.maximum(spacing.sizes, 1.5 * spacing.sizes.min()))
 
 
 def _points(rng: np.random.Generator, box: NDArray[np.float64]) -> Pattern:
