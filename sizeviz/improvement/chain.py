@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from sizeviz.improvement._workspace import Workspace
 from sizeviz.improvement.cleanup import clean_fast, clean_wide, rescue
 from sizeviz.improvement.options import SmoothOptions
+from sizeviz.improvement.room import with_room
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def improved(
 
 def improve(mesh: QuadMesh, domain: Domain, size: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
     """Do what ``improved`` does and return the workspace, for those who go on from there."""
-    work = Workspace(mesh, domain, size, options)
+    work = Workspace(mesh, domain, with_room(mesh, size), options)
     if options.cleanup:
         work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
         clean_fast(work, SubMonitor(monitor, 0.05, 0.2))

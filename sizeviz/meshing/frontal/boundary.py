@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.meshing.frontal import _boundary_kernels as kernels
-from sizeviz.meshing.frontal.network import Network, network, unrolled
+from sizeviz.meshing.frontal.network import Network, Piece, network, unrolled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,7 +62,7 @@ class Outline:
         return float(0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum())
 
 
-def outline(domain: Domain, size: SizeField, scale: float) -> Outline:
+def outline(domain: Domain, size: SizeField, scale: float, net: Network | None = None) -> Outline:
     """Return nodes along every curve of the domain.
 
     Parameters
@@ -73,8 +73,10 @@ def outline(domain: Domain, size: SizeField, scale: float) -> Outline:
         Sizes; nodes are placed at equal steps of the integral of 1 / (scale · size).
     scale : float
         Element size asked for relative to the field.
+    net : Network, optional
+        The domain's pieces; by default ``network`` of it.
     """
-    net = network(domain, size, scale)
+    net = net or network(domain, size, scale)
     marches = [_march(domain.curves[piece.curve], piece.begin, piece.end, size, scale) for piece in net.pieces]
     counts = _counts(net, domain.curves, np.array([totals[-1] for _, totals in marches]))
     points, curve, fixed, edges, along = [net.points], [net.curve], [net.fixed], [], []
@@ -109,15 +111,20 @@ def _march(
 
 def _counts(net: Network, curves: tuple[Curve, ...], ideal: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the number of edges of each piece: as the sizes ask, then even for every chain that separates."""
-    counts = np.maximum(np.ceil(ideal - SLACK), 1.0).astype(np.int64)
-    for k, piece in enumerate(net.pieces):
-        turning = _turning(curves[piece.curve], piece.begin, piece.end)
-        counts[k] = max(counts[k], int(np.ceil(turning / SHARPEST - 1e-9)), 3 if piece.first == piece.last else 1)
+    counts = np.array([least_count(curves[piece.curve], piece, ideal[k]) for k, piece in enumerate(net.pieces)])
     for chain in net.chains():
         closed = len(chain) >= 3 or net.pieces[chain[0]].first == net.pieces[chain[0]].last
         while (counts[chain].sum() % 2 and not net.dangles(chain)) or (closed and counts[chain].sum() < 4):
-            counts[max(chain, key=lambda k: ideal[k] / counts[k])] += 1
+            counts[max(chain, key=lambda k: 0.0 if net.pieces[k].whole else ideal[k] / counts[k])] += 1
     return counts
+
+
+def least_count(curve: Curve, piece: Piece, ideal: float) -> int:
+    """Return into how many edges a piece must be cut at least, where its sizes ask for ``ideal``."""
+    if piece.whole:
+        return 1
+    turning = int(np.ceil(_turning(curve, piece.begin, piece.end) / SHARPEST - 1e-9))
+    return max(int(np.ceil(ideal - SLACK)), turning, 3 if piece.first == piece.last else 1)
 
 
 def _turning(curve: Curve, begin: float, end: float) -> float:

@@ -14,6 +14,7 @@ from sizeviz.geometry.delaunay import Triangulation, hilbert_order, triangulated
 from sizeviz.meshing.checks import verify
 from sizeviz.meshing.frontal.boundary import Outline, outline
 from sizeviz.meshing.frontal.mending import mended
+from sizeviz.meshing.frontal.narrows import fitted
 from sizeviz.meshing.frontal.packing import packed, seeded
 from sizeviz.meshing.frontal.pairing import paired
 from sizeviz.meshing.frontal.region import region_arrays
@@ -62,7 +63,8 @@ def _triangulation(
 ) -> tuple[Outline, Triangulation]:
     """Return the outline, renumbered, and the triangulation of the packed nodes, sorted along a Hilbert curve."""
     monitor.step(0.0, "placing nodes on the boundary")
-    rim = outline(domain, size, options.scale)
+    net, size = fitted(domain, size, options.scale)
+    rim = outline(domain, size, options.scale, net)
     region = region_arrays(domain, rim)
     seeds = seeded(region, size, options, SubMonitor(monitor, 0.0, 0.2))
     nodes = packed(rim, region, seeds, size, options, SubMonitor(monitor, 0.2, 0.8))

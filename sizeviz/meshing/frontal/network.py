@@ -34,6 +34,8 @@ class Piece:
         Arc lengths along the curve.
     first, last : int
         The nodes at both ends; equal where the piece is a whole closed curve.
+    whole : bool
+        Whether the piece is to be one edge.
     """
 
     curve: int
@@ -41,6 +43,7 @@ class Piece:
     end: float
     first: int
     last: int
+    whole: bool = False
 
 
 @dataclass(frozen=True, eq=False)
