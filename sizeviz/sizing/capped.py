@@ -22,9 +22,7 @@ STEP = 0.25
 """Bounds within a factor of 2 to this power are looked up together, so sizes may lie above the bound by as much."""
 
 
-def capped(
-    field: SizeField, points: NDArray[np.float64], caps: NDArray[np.float64], slope: float = SLOPE
-) -> SizeField:
+def capped(field: SizeField, points: NDArray[np.float64], caps: NDArray[np.float64], slope: float = SLOPE) -> SizeField:
     """Return the least of a field and of ``cap + slope · distance`` from every point.
 
     The points become background nodes. Triangles that no bound reaches stay as they are, and with them the field
@@ -54,13 +52,14 @@ def capped(
     at, triangles = field.background.points, field.background.triangles
     bound = _bounds(at, points, caps, slope, float(field.sizes.max()))
     lowered = bound < field.sizes
-    touched = lowered[triangles].any(axis=1)
+    touched = np.asarray(lowered[triangles].any(axis=1))
     inside = np.empty(len(points), dtype=np.int64)
     triangles_into(field.sampler, points, inside)
     touched[inside] = True
     near = np.zeros(len(at), dtype=bool)
     near[triangles[touched]] = True
-    touched = near[triangles].any(axis=1)  # one ring more, so that no new node lies on the rim of what is made anew
+    # one ring more, so that no new node lies on the rim of what is made anew
+    touched = np.asarray(near[triangles].any(axis=1))
     sides = triangles[touched][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     key = np.sort(sides, axis=1)
     _, index, count = np.unique(key[:, 0].astype(np.int64) * len(at) + key[:, 1], return_index=True, return_counts=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +41,8 @@ class Outline:
         Whether an edge lies on the boundary, not on an inner line; the domain is then on its left.
     along : (E,) int32
         The curve of ``Domain.curves`` that each edge follows.
+    kites : (K, 4) int32
+        The nodes of elements that are settled already, which no other node may lie in.
     """
 
     points: NDArray[np.float64]
@@ -49,6 +51,7 @@ class Outline:
     edges: NDArray[np.int32]
     bounding: NDArray[np.bool_]
     along: NDArray[np.int32]
+    kites: NDArray[np.int32] = field(default_factory=lambda: np.empty((0, 4), dtype=np.int32))
 
     @property
     def lengths(self) -> NDArray[np.float64]:
@@ -99,6 +102,7 @@ def outline(domain: Domain, size: SizeField, scale: float, net: Network | None =
         np.vstack(edges).astype(np.int32),
         np.array([not one.inner for one in domain.curves])[follows],
         follows,
+        net.kites,
     )
 
 

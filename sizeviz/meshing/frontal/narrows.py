@@ -1,7 +1,7 @@
 """Places where a domain leaves less room than the sizes ask for: sharp corners, gaps, short pieces of its outline.
 
-There the domain decides how large an element can be. Sizes shrink towards such places and grow away from them, so that
-elements keep their shape; what a sharp corner gets is one element, a kite between two nodes on its sides and one inside.
+There the domain decides how large an element can be. Sizes shrink towards such places and grow away from them, so
+that elements keep their shape; a sharp corner gets one element, a kite between two nodes on its sides and one inside.
 """
 
 from __future__ import annotations
@@ -37,6 +37,9 @@ WIDE = 0.8
 
 NARROWEST = 0.125
 """Gaps narrower than this share of the size are filled by longer elements: a crack would need countless square ones."""
+
+BEYOND = 0.3
+"""Where a kite's inner node lies; at 0.25 all four would lie on one circle, and its diagonal might be the wrong one."""
 
 FACING = -0.7
 """Scalar product of the normals of walls that face each other."""
@@ -99,7 +102,7 @@ def _with_kites(
     """
     pieces = list(net.pieces)
     points, curve, fixed = [net.points], [net.curve], [net.fixed]
-    places, caps, tips = [], [], []
+    places, caps, tips, kites = [], [], [], []
     cut: dict[tuple[int, bool], tuple[float, int]] = {}
     n = len(net.points)
     for corner in _corners(net, curves, size, scale):
@@ -116,12 +119,13 @@ def _with_kites(
         sides = [_from(curves, pieces[end.piece], end.last, length) for end in (corner.right, corner.left)]
         middle = 0.5 * (sides[0] + sides[1])
         axis, across = middle - tip, sides[1] - sides[0]
-        inner = middle + 0.25 * axis * float(across @ across) / max(float(axis @ axis), 1e-300)
+        inner = middle + BEYOND * axis * float(across @ across) / max(float(axis @ axis), 1e-300)
         for k, end in enumerate((corner.right, corner.left)):
             cut[end.piece, end.last] = length, n + k
         points.append(np.vstack([*sides, inner]))
         curve.append(np.array([pieces[corner.right.piece].curve, pieces[corner.left.piece].curve, -1]))
         fixed.append(np.array([True, True, False]))
+        kites.append([corner.node, n, n + 2, n + 1])
         n += 3
         reach = scale * float(size.sizes.max()) / growth
         at = length * 1.2 ** np.arange(1 + max(0, int(np.log(max(reach / length, 1.0)) / np.log(1.2))))
@@ -144,7 +148,11 @@ def _with_kites(
             pieces[k] = replace(piece, begin=piece.begin + length, first=node)
             pieces.append(Piece(piece.curve, piece.begin, piece.begin + length, piece.first, node, whole=True))
     merged = Network(
-        np.vstack(points), np.concatenate(curve).astype(np.int32), np.concatenate(fixed), tuple(pieces)
+        np.vstack(points),
+        np.concatenate(curve).astype(np.int32),
+        np.concatenate(fixed),
+        tuple(pieces),
+        np.array(kites, dtype=np.int32).reshape(-1, 4),
     )
     return merged, places, caps, np.array(tips).reshape(-1, 3)
 

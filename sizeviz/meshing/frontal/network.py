@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,12 +60,15 @@ class Network:
         Nodes that must stay; the arbitrary first node of a smooth closed curve need not.
     pieces : tuple of Piece
         In the order of the curves, along each.
+    kites : (K, 4) int32
+        The nodes of the element in each sharp corner, counter-clockwise from its tip.
     """
 
     points: NDArray[np.float64]
     curve: NDArray[np.int32]
     fixed: NDArray[np.bool_]
     pieces: tuple[Piece, ...]
+    kites: NDArray[np.int32] = field(default_factory=lambda: np.empty((0, 4), dtype=np.int32))
 
     def chains(self) -> list[list[int]]:
         """Return the pieces, by number, joined wherever just two of them meet: loops, and runs between junctions."""

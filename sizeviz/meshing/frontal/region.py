@@ -40,7 +40,8 @@ def region_arrays(domain: Domain, rim: Outline) -> RegionArrays:
     Returns
     -------
     tuple
-        Bounding box, points, triangles, neighbours, which triangles are inside, which of their edges are locked.
+        Bounding box, points, triangles, neighbours, which triangles are inside (those of kites are not), which of
+        their edges are locked.
     """
     box = read_only(np.array(domain.bounds))
     if is_box(domain) and not domain.lines:
@@ -53,4 +54,6 @@ def region_arrays(domain: Domain, rim: Outline) -> RegionArrays:
     width = len(rim.points)
     bounding = np.isin(ends[..., 0] * width + ends[..., 1], bounds[:, 0] * width + bounds[:, 1])
     inside = kernels.parity(hull.neighbours, bounding & hull.locked)
+    for kite in rim.kites:
+        inside &= ~np.isin(hull.triangles, kite).all(axis=1)
     return box, hull.points, hull.triangles, hull.neighbours, read_only(inside), hull.locked
