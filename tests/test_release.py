@@ -42,7 +42,8 @@ def test_the_desktop_entry_starts_the_window_and_has_an_icon() -> None:
 def test_the_lock_fits_the_project() -> None:
     lines = (ROOT / ".ci" / "lock.txt").read_text("utf-8").splitlines()[1:]
     locked = {Requirement(line).name.lower(): Requirement(line) for line in lines}
-    wanted = [*PROJECT["dependencies"], *(name for extra in PROJECT["optional-dependencies"].values() for name in extra)]
+    extras = PROJECT["optional-dependencies"].values()
+    wanted = [*PROJECT["dependencies"], *(name for extra in extras for name in extra)]
     checked = 0
     for requirement in map(Requirement, wanted):
         pinned = locked.get(requirement.name.lower().replace("_", "-"))
