@@ -1,4 +1,4 @@
-"""The blocks of a grid's pyramid that may matter to a tile of nodes, and their bounds at each node."""
+"""The blocks of a grid's pyramid that may matter to a tile of nodes."""
 
 import math
 
@@ -8,18 +8,11 @@ from sizeviz.sizing._piece_kernels import BLOCK_LEVEL, simple
 MOST_BLOCKS = 128
 """Blocks listed for a tile at most."""
 
-CENTRE_X, CENTRE_Y, PLANE, RISE_X, RISE_Y, STEEPNESS, LOWEST = range(7)
-"""Rows of what is kept of listed blocks: centre from the tile's first node, bounding plane, its slope, least size."""
-
-BLOCK_ROWS = LOWEST + 2
-"""Those rows, and one for the bounds at the node in hand."""
-
 
 @simple
 def list_blocks(
-    kind, coefficient, grid, shapes, bounds, i0, j0, rows, columns, value, slope_x, slope_y, most, stack,
-    blocks, places,
-):  # fmt: skip
+    kind, coefficient, grid, shapes, bounds, i0, j0, rows, columns, value, slope_x, slope_y, most, stack, places
+):
     """List the blocks that may lower the envelope at some node of a tile; return how many, -1 if too many.
 
     Parameters
@@ -45,7 +38,7 @@ def list_blocks(
             stack[0, 0], stack[0, 1], stack[0, 2] = level, row, column
             count = _list_within(
                 kind, coefficient, grid, shapes, bounds, i0, j0, rows, columns, value, slope_x, slope_y, most, finest,
-                stack, blocks, places, count,
+                stack, places, count,
             )  # fmt: skip
             if count < 0:
                 return count
@@ -55,7 +48,7 @@ def list_blocks(
 @simple
 def _list_within(
     kind, coefficient, grid, shapes, bounds, i0, j0, rows, columns, value, slope_x, slope_y, most, finest, stack,
-    blocks, places, count,
+    places, count,
 ):  # fmt: skip
     """Append the blocks of the finest level below the one on the stack; return how many are listed, -1 if too many."""
     tile_x, tile_y = 0.5 * (columns - 1) * grid[2], 0.5 * (rows - 1) * grid[3]
@@ -81,17 +74,8 @@ def _list_within(
         if count == MOST_BLOCKS:
             return -1
         places[count, 0], places[count, 1] = row, column
-        _keep(bounds, block, x, y, blocks, count)
         count += 1
     return count
-
-
-@simple
-def _keep(bounds, block, x, y, blocks, count):
-    blocks[CENTRE_X, count], blocks[CENTRE_Y, count] = x, y
-    blocks[PLANE, count], blocks[LOWEST, count] = bounds[block, BASE], bounds[block, LEAST]
-    blocks[RISE_X, count], blocks[RISE_Y, count] = bounds[block, SLOPE_X], bounds[block, SLOPE_Y]
-    blocks[STEEPNESS, count] = bounds[block, SLOPE]
 
 
 @simple
@@ -121,20 +105,3 @@ def _may_improve_tile(
     slack = half_x * abs(bounds[block, SLOPE_X] + weight * nx) + half_y * abs(bounds[block, SLOPE_Y] + weight * ny)
     slack += tile_x * abs(factor * slope_x + weight * nx) + tile_y * abs(factor * slope_y + weight * ny)
     return bounds[block, BASE] + weight * distance - slack < factor * value * (1.0 - ROUNDING)
-
-
-@simple
-def bound_blocks(alpha, blocks, count, x, y, half_x, half_y, least):
-    """Fill ``least`` with lower bounds of each listed block's size-preserving envelope at (x, y)."""
-    centre_x, centre_y, plane, lowest = blocks[CENTRE_X], blocks[CENTRE_Y], blocks[PLANE], blocks[LOWEST]
-    rise_x, rise_y, steepness = blocks[RISE_X], blocks[RISE_Y], blocks[STEEPNESS]
-    each = 1.0 / alpha
-    for k in range(count):
-        px, py = centre_x[k] - x, centre_y[k] - y
-        distance = math.sqrt(px * px + py * py)
-        pull = steepness[k] / max(distance, 1e-300)
-        bound = plane[k] + steepness[k] * distance
-        bound -= half_x * abs(rise_x[k] + pull * px) + half_y * abs(rise_y[k] + pull * py)
-        dx, dy = max(abs(px) - half_x, 0.0), max(abs(py) - half_y, 0.0)
-        near = max(lowest[k], each * math.sqrt(dx * dx + dy * dy))
-        least[k] = max(bound / (1.0 + alpha * steepness[k]), near)

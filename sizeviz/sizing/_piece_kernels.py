@@ -92,7 +92,7 @@ def bound_triangles_for_tile(alpha, grid, pieces, count, x, y, tile_x, tile_y, s
 
 @simple
 def keep_triangles(pieces, count, gaps, value, most, first_row, first_column, columns, kept, names, filled):
-    """Append those triangles that may lower the tile's envelope; return how many are kept then, a multiple of four."""
+    """Append those triangles that may lower the tile's envelope; return how many are kept then."""
     for k in range(count):
         if gaps[k] >= value * (1.0 - ROUNDING) or pieces[LEAST_SIZE, k] >= most:
             continue
@@ -101,6 +101,50 @@ def keep_triangles(pieces, count, gaps, value, most, first_row, first_column, co
         cell = k >> 1
         names[filled, 0], names[filled, 1] = first_row + cell // columns, first_column + cell % columns
         filled += 1
+    return filled
+
+
+@simple
+def narrow_triangles(
+    alpha, grid, kept, names, count, x, y, tile_x, tile_y, value, slope_x, slope_y, most, gaps, near, near_names
+):
+    """Copy those kept triangles that may lower a part of the tile; return how many, filled up to a multiple of four.
+
+    As ``bound_triangles_for_tile``; the envelope of the whole plane, linear in the node, is a third lower bound.
+    """
+    third_x, third_y, each = grid[2] / 3.0, grid[3] / 3.0, 1.0 / alpha
+    at_x, at_y, size, side = kept[X], kept[Y], kept[SIZE], kept[SIDE]
+    uphill_x, uphill_y, slope, share = kept[UPHILL_X], kept[UPHILL_Y], kept[SLOPE], kept[SHARE]
+    for k in range(count):
+        px, py = at_x[k] - x, at_y[k] - y
+        distance = math.sqrt(px * px + py * py)
+        weight = slope[k] * share[k]
+        own = size[k] * share[k]
+        gap = own - weight * (uphill_x[k] * px + uphill_y[k] * py)
+        gap -= tile_x * abs(slope_x - weight * uphill_x[k]) + tile_y * abs(slope_y - weight * uphill_y[k])
+        per = 1.0 / max(distance, 1e-300)
+        px, py = px * per, py * per
+        qx, qy = side[k] * third_x * px, side[k] * third_y * py
+        slack = max(max(2.0 * qx + qy, qy - qx), -qx - 2.0 * qy)
+        away = (distance - slack) * each
+        gap = max(gap, away - tile_x * abs(slope_x + each * px) - tile_y * abs(slope_y + each * py))
+        qx, qy = qx + side[k] * third_x * uphill_x[k], qy + side[k] * third_y * uphill_y[k]
+        slack = max(max(2.0 * qx + qy, qy - qx), -qx - 2.0 * qy)
+        both = own + weight * (distance - slack)
+        gaps[k] = max(gap, both - tile_x * abs(slope_x + weight * px) - tile_y * abs(slope_y + weight * py))
+    filled = 0
+    for k in range(count):
+        if gaps[k] < value * (1.0 - ROUNDING) and kept[LEAST_SIZE, k] < most:
+            for row in range(SHARE + 1):
+                near[row, filled] = kept[row, k]
+            near_names[filled, 0], near_names[filled, 1] = names[k, 0], names[k, 1]
+            filled += 1
+    return _filled_up(near, filled)
+
+
+@simple
+def _filled_up(kept, filled):
+    """Fill up to a multiple of four with triangles that improve nothing."""
     while filled % 4:
         for row in range(SHARE + 1):
             kept[row, filled] = 0.0
@@ -110,7 +154,7 @@ def keep_triangles(pieces, count, gaps, value, most, first_row, first_column, co
 
 
 @simple
-def bound_triangles(alpha, grid, kept, start, stop, x, y, values, attained):
+def bound_triangles(alpha, grid, kept, count, x, y, values, attained):
     """Fill ``values`` with lower bounds of each kept triangle's envelope at (x, y), and ``attained`` where it is known.
 
     The greatest of four bounds: the least size; the distance; the envelope of the whole plane, which is attained if its
@@ -119,10 +163,9 @@ def bound_triangles(alpha, grid, kept, start, stop, x, y, values, attained):
     ``attained`` is infinite elsewhere.
     """
     third_x, third_y, each = grid[2] / 3.0, grid[3] / 3.0, 1.0 / alpha
-    at_x, at_y, size, least = kept[X, start:], kept[Y, start:], kept[SIZE, start:], kept[LEAST_SIZE, start:]
-    uphill_x, uphill_y, slope = kept[UPHILL_X, start:], kept[UPHILL_Y, start:], kept[SLOPE, start:]
-    side, share = kept[SIDE, start:], kept[SHARE, start:]
-    for k in range(stop - start):
+    at_x, at_y, size, least = kept[X], kept[Y], kept[SIZE], kept[LEAST_SIZE]
+    uphill_x, uphill_y, slope, side, share = kept[UPHILL_X], kept[UPHILL_Y], kept[SLOPE], kept[SIDE], kept[SHARE]
+    for k in range(count):
         px, py = at_x[k] - x, at_y[k] - y
         distance = math.sqrt(px * px + py * py)
         per = 1.0 / max(distance, 1e-300)
@@ -140,18 +183,26 @@ def bound_triangles(alpha, grid, kept, start, stop, x, y, values, attained):
 
 
 @simple
-def improve_by_triangles(alpha, grid, sizes, i, j, kept, names, start, stop, values, attained, best):
-    """Return the least of ``best`` and of the envelopes at node (i, j) of the triangles bounded below by ``values``."""
-    count = stop - start
+def improve_by_triangles(alpha, grid, sizes, i, j, kept, names, count, values, attained, best, last):
+    """Return the least of ``best`` and of the kept triangles' envelopes at node (i, j), and the triangle it is from.
+
+    ``values`` bounds the envelopes below. The triangle ``last``, that of the node before, is tried first: it nearly
+    attains the least, and most others are then out of the question.
+    """
     a, b, c, d = best, best, best, best
     for k in range(0, count, 4):
         a, b = min(a, attained[k]), min(b, attained[k + 1])
         c, d = min(c, attained[k + 2]), min(d, attained[k + 3])
     best = min(min(a, b), min(c, d))
+    if values[last] < best * (1.0 - ROUNDING):
+        best = _on_triangle(alpha, grid, sizes, i, j, names[last], kept[SIDE, last], best)
+    found = last
     for k in range(count):
-        if values[k] < best * (1.0 - ROUNDING):
-            best = _on_triangle(alpha, grid, sizes, i, j, names[start + k], kept[SIDE, start + k], best)
-    return best
+        if values[k] < best * (1.0 - ROUNDING) and k != last:
+            lower = _on_triangle(alpha, grid, sizes, i, j, names[k], kept[SIDE, k], best)
+            if lower < best:
+                best, found = lower, k
+    return best, found
 
 
 @simple

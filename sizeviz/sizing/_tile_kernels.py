@@ -10,8 +10,8 @@ import math
 import numpy as np
 from numba import njit
 
-from sizeviz.sizing._block_kernels import BLOCK_ROWS, MOST_BLOCKS, bound_blocks, list_blocks
-from sizeviz.sizing._envelope_kernels import LIMIT, PRESERVE, ROUNDING
+from sizeviz.sizing._block_kernels import MOST_BLOCKS, list_blocks
+from sizeviz.sizing._envelope_kernels import LIMIT, PRESERVE
 from sizeviz.sizing._grid_kernels import search_from
 from sizeviz.sizing._kernels import size_on_grid
 from sizeviz.sizing._piece_kernels import (
@@ -26,12 +26,13 @@ from sizeviz.sizing._piece_kernels import (
     improve_by_triangles,
     keep_nodes,
     keep_triangles,
+    narrow_triangles,
     raise_nodes,
     simple,
 )
 
-TILE = 8
-"""Nodes along a tile."""
+TILE, PART = 8, 4
+"""Nodes along a tile, and along the parts of it for which its triangles are sifted again."""
 
 AWAY_X, AWAY_Y, SIZE_THERE = range(3)
 """What is kept of a corner: the way to a point that nearly attains its envelope, and the size at that point."""
@@ -104,9 +105,10 @@ def envelope_tiles(kind, coefficient, scale, grid, sizes, shapes, bounds, corner
     nx, ny = int(grid[4]), int(grid[5])
     stack, tested, found = np.empty((256, 3), dtype=np.int64), np.empty(256), np.zeros(2, dtype=np.int64)
     upper = np.empty((TILE, TILE))
-    blocks, places = np.empty((BLOCK_ROWS, MOST_BLOCKS)), np.empty((MOST_BLOCKS + 1, 3), dtype=np.int64)
+    places = np.empty((MOST_BLOCKS, 2), dtype=np.int64)
     kept, names = np.empty((SHARE + 1, MOST_BLOCKS * PIECES)), np.empty((MOST_BLOCKS * PIECES, 2), dtype=np.int64)
-    pieces, values, attained = np.empty((SHARE + 1, PIECES)), np.empty(MOST_BLOCKS * PIECES), np.empty(PIECES)
+    near, near_names = np.empty_like(kept), np.empty_like(names)
+    pieces, values, attained = np.empty((SHARE + 1, PIECES)), np.empty(len(names)), np.empty(len(names))
     for row in range(first_row, last_row):
         for column in range(corners.shape[1] - 1):
             i0, j0 = row * TILE, column * TILE
@@ -115,13 +117,19 @@ def envelope_tiles(kind, coefficient, scale, grid, sizes, shapes, bounds, corner
             value, slope_x, slope_y, most = _plane_above(grid, upper, rows, columns)
             count = list_blocks(
                 kind, coefficient, grid, shapes, bounds, i0, j0, rows, columns, value, slope_x, slope_y, most, stack,
-                blocks, places,
+                places,
             )  # fmt: skip
             if count > 0:
                 count = _gather(
                     kind, coefficient, grid, sizes, shapes, i0, j0, rows, columns, value, slope_x, slope_y, most,
-                    blocks, places, count, pieces, kept, names, values,
+                    places, count, pieces, kept, names, values,
                 )  # fmt: skip
+            if kind == PRESERVE and count > 0:
+                _preserve(
+                    coefficient, scale, grid, sizes, i0, j0, rows, columns, upper, kept, names, count, values, near,
+                    near_names, attained, out,
+                )  # fmt: skip
+                continue
             for i in range(i0, i0 + rows):
                 for j in range(j0, j0 + columns):
                     best = min(upper[i - i0, j - j0], sizes[i * nx + j])
@@ -129,11 +137,6 @@ def envelope_tiles(kind, coefficient, scale, grid, sizes, shapes, bounds, corner
                         best = search_from(
                             kind, coefficient, grid, sizes, shapes, bounds, i, j, best, stack, tested, found
                         )
-                    elif count > 0 and kind == PRESERVE:
-                        best = _preserve(
-                            coefficient, grid, sizes, shapes, i, j, i0, j0, best, count, blocks, places, kept, names,
-                            values, attained,
-                        )  # fmt: skip
                     elif count > 0:
                         raise_nodes(coefficient, kept, count, (j - j0) * grid[2], (i - i0) * grid[3], values)
                         best = improve_by_nodes(coefficient, grid, sizes, i, j, names, count, values, best)
@@ -193,12 +196,12 @@ def _plane_above(grid, upper, rows, columns):
 @simple
 def _gather(
     kind, coefficient, grid, sizes, shapes, i0, j0, rows, columns, value, slope_x, slope_y, most,
-    blocks, places, count, pieces, kept, names, values,
+    places, count, pieces, kept, names, values,
 ):  # fmt: skip
-    """Keep the pieces of listed blocks that matter to the tile; return how many blocks, or nodes for limiting."""
+    """Keep the triangles, or for limiting the nodes, of listed blocks that matter to the tile; return how many."""
     level = min(BLOCK_LEVEL, len(shapes) - 1)
     tile_x, tile_y = 0.5 * (columns - 1) * grid[2], 0.5 * (rows - 1) * grid[3]
-    filled, held = 0, 0
+    filled = 0
     for k in range(count):
         first_row, first_column = places[k, 0] << level, places[k, 1] << level
         high = min(1 << level, shapes[0, 0] - first_row)
@@ -212,35 +215,32 @@ def _gather(
             continue
         n = gather_triangles(grid, sizes, first_row, first_column, high, wide, i0, j0, pieces)
         bound_triangles_for_tile(coefficient, grid, pieces, n, tile_x, tile_y, tile_x, tile_y, slope_x, slope_y, values)
-        start = filled
         filled = keep_triangles(pieces, n, values, value, most, first_row, first_column, wide, kept, names, filled)
-        if filled > start:
-            for r in range(BLOCK_ROWS):
-                blocks[r, held] = blocks[r, k]
-            places[held, 2] = start
-            held += 1
-    if kind == LIMIT:
-        return filled
-    places[held, 2] = filled
-    return held
+    return filled
 
 
 @simple
-def _preserve(alpha, grid, sizes, shapes, i, j, i0, j0, best, count, blocks, places, kept, names, values, attained):
-    """Return the envelope at node (i, j), given an upper bound and what is kept for its tile."""
-    level = min(BLOCK_LEVEL, len(shapes) - 1)
-    x, y = (j - j0) * grid[2], (i - i0) * grid[3]
-    least = blocks[BLOCK_ROWS - 1]
-    bound_blocks(alpha, blocks, count, x, y, 0.5 * grid[2] * (1 << level), 0.5 * grid[3] * (1 << level), least)
-    first = 0
-    for k in range(1, count):
-        if least[k] < least[first]:
-            first = k
-    for turn in range(count):
-        # the most promising block first: most others are then out of the question
-        k = first if turn == 0 else (0 if turn == first else turn)
-        if least[k] < best * (1.0 - ROUNDING):
-            start, stop = places[k, 2], places[k + 1, 2]
-            bound_triangles(alpha, grid, kept, start, stop, x, y, values, attained)
-            best = improve_by_triangles(alpha, grid, sizes, i, j, kept, names, start, stop, values, attained, best)
-    return best
+def _preserve(
+    alpha, scale, grid, sizes, i0, j0, rows, columns, upper, kept, names, count, values, near, near_names, attained, out
+):
+    """Fill a tile of ``out``, part by part, from the triangles kept for it."""
+    nx = int(grid[4])
+    for r in range(0, rows, PART):
+        for s in range(0, columns, PART):
+            high, wide = min(PART, rows - r), min(PART, columns - s)
+            value, slope_x, slope_y, most = _plane_above(grid, upper[r : r + high, s : s + wide], high, wide)
+            half_x, half_y = 0.5 * (wide - 1) * grid[2], 0.5 * (high - 1) * grid[3]
+            n = narrow_triangles(
+                alpha, grid, kept, names, count, s * grid[2] + half_x, r * grid[3] + half_y, half_x, half_y, value,
+                slope_x, slope_y, most, values, near, near_names,
+            )  # fmt: skip
+            last = 0
+            for i in range(r, r + high):
+                for j in range(s, s + wide):
+                    best = min(upper[i, j], sizes[(i0 + i) * nx + j0 + j])
+                    if n > 0:
+                        bound_triangles(alpha, grid, near, n, j * grid[2], i * grid[3], values, attained)
+                        best, last = improve_by_triangles(
+                            alpha, grid, sizes, i0 + i, j0 + j, near, near_names, n, values, attained, best, last
+                        )
+                    out[(i0 + i) * nx + j0 + j] = scale * best
