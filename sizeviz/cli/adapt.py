@@ -23,7 +23,8 @@ class ProcessOptions:
     iterations
         Give up after this many meshes.
     limit
-        Converged when no element's R against the given field is above this.
+        Converged when no element's R against the given field is above this; with --guarantee at most 1, by the
+        longest edge.
     cells
         Elements along the longer side of the uniform mesh to start from.
     background

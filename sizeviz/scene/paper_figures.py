@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -117,14 +118,52 @@ def draw_cells(
     from matplotlib.collections import PolyCollection
 
     rows = np.flatnonzero(inside(mesh, bounds))
-    many = len(rows) > MOST_VECTORS
-    colors = scale.colors(values[rows]) / 255.0
-    faces = PolyCollection(list(mesh.points[mesh.quads[rows]]), facecolors=colors, edgecolors=colors, rasterized=many)
-    faces.set(linewidth=0.1, antialiased=not many)
-    faces.set_in_layout(False)
-    axes.add_collection(faces)
+    corners, colors = mesh.points[mesh.quads[rows]], scale.colors(values[rows])
+    if len(rows) > MOST_VECTORS:
+        x0, y0, x1, y1 = bounds
+        axes.imshow(painted_cells(corners, colors, bounds), extent=(x0, x1, y0, y1))
+    else:
+        faces = PolyCollection(list(corners), facecolors=colors / 255.0, edgecolors=colors / 255.0, linewidth=0.1)
+        faces.set_in_layout(False)
+        axes.add_collection(faces)
     bare(axes, bounds)
     draw_bar(figure, axes, scale)
+
+
+def painted_cells(
+    corners: NDArray[np.float64],
+    colors: NDArray[np.uint8],
+    bounds: tuple[float, float, float, float],
+    pixels: int = 1400,
+) -> NDArray[np.uint8]:
+    """Return elements painted as pixels, a hundred times sooner than as vectors.
+
+    Parameters
+    ----------
+    corners : (N, 4, 2) float64
+        Of each element.
+    colors : (N, 3) uint8
+        Red, green and blue of each.
+    bounds : tuple
+        The box that the picture shows, which is as wide as high.
+    pixels : int
+        Along a side; each is the mean of four.
+
+    Returns
+    -------
+    (pixels, pixels, 3) uint8
+        The highest y first.
+    """
+    from PIL import Image, ImageDraw
+
+    x0, y0, x1, y1 = bounds
+    fine = 2 * pixels
+    where = (corners - (x0, y1)) * (fine / (x1 - x0), fine / (y0 - y1)) - 0.5
+    picture = Image.new("RGB", (fine, fine), "white")
+    pen = ImageDraw.Draw(picture)
+    for outline, color in zip(where.reshape(-1, 8).tolist(), map(tuple, colors.tolist()), strict=True):
+        pen.polygon(outline, fill=color)
+    return np.asarray(picture.reduce(2))
 
 
 def draw_bar(figure: Any, axes: Any, scale: ColorScale) -> None:
@@ -141,7 +180,18 @@ def draw_bar(figure: Any, axes: Any, scale: ColorScale) -> None:
     bar.outline.set_linewidth(0.4)
 
 
-def draw_evolution(axes: Any, curves: Mapping[str, Evolution], against: str, color: str) -> None:
+@dataclass(frozen=True)
+class Published:
+    """A largest R of the paper's: at one iteration, or a bound for all where ``iteration`` is None."""
+
+    words: str
+    ratio: float
+    iteration: int | None = None
+
+
+def draw_evolution(
+    axes: Any, curves: Mapping[str, Evolution], against: str, color: str, published: Published | None = None
+) -> None:
     """Draw the largest R of each iteration.
 
     Parameters
@@ -154,27 +204,47 @@ def draw_evolution(axes: Any, curves: Mapping[str, Evolution], against: str, col
         What R is measured against.
     color : str
         Of every curve; line styles tell them apart.
+    published : Published, optional
+        A number of the paper's.
     """
+    least, most = 1.0, 1.0
     for style, (label, evolution) in zip(DASHES, curves.items(), strict=False):
         rows = evolution.iterations[1:]  # the first mesh was made from no background
         ratio = [row.background_ratio if against == "background" else row.analytic_ratio for row in rows]
         marker = "o" if len(rows) < 12 else ""
         axes.plot([row.number for row in rows], ratio, style, marker=marker, ms=3.5, lw=1.2, color=color, label=label)
+        least, most = min([least, *ratio]), max([most, *ratio])
     limits = {evolution.limit for evolution in curves.values()}
     axes.axhline(1.0, color=FAINT, lw=0.8)
     for limit in limits:
         axes.axhline(limit, color=FAINT, lw=0.8, ls=":")
-        axes.annotate(f"{limit:g}", (1.0, limit), xycoords=("axes fraction", "data"), fontsize=7, color=FAINT)
+        axes.annotate(
+            f"{limit:g}", (1.0, limit), xycoords=("axes fraction", "data"), xytext=(2, 0), textcoords="offset points",
+            va="center", fontsize=7, color=FAINT,
+        )  # fmt: skip
+    if published:
+        _draw_published(axes, published)
+        least, most = min(least, published.ratio), max(most, published.ratio)
     axes.set_yscale("log")
-    top = max((row.analytic_ratio for one in curves.values() for row in one.iterations[1:]), default=2.0)
-    ticks = [value for value in (0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0) if value <= 1.3 * top]
+    low, high = least / 1.1, most * 1.15
+    ticks = [value for value in (0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0) if low <= value <= high]
     axes.set_yticks(ticks, [f"{value:g}" for value in ticks])
     axes.minorticks_off()
+    axes.set_ylim(low, high)
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel("iteration", fontsize=8)
     axes.set_ylabel("largest R(e)", fontsize=8)
-    if len(curves) > 1:
+    if len(curves) > 1 or published:
         axes.legend(fontsize=7, frameon=False)
+
+
+def _draw_published(axes: Any, published: Published) -> None:
+    if published.iteration is None:
+        axes.axhline(published.ratio, color=INK, lw=0.9, ls=(0, (1, 2)), label=published.words)
+    else:
+        axes.plot(
+            [published.iteration], [published.ratio], "D", ms=5, mfc="white", mec=INK, zorder=3, label=published.words
+        )
 
 
 def save_evolution(evolution: Evolution, folder: Path, name: str = "evolution") -> None:

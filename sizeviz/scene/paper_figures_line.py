@@ -27,7 +27,7 @@ def save_line_figures(example: LineExample, folder: Path) -> None:
     save(figure, folder, "figure-1")
     figure, panels = sheet((1, 2), (4.2, 3.0))
     _ball(panels[0], example, "(a) the element at x spans x ± h*(x)")
-    _alphas(panels[1], example, "(b) size preserving by α")
+    _alphas(panels[1], example, "(b) h* for α = 0.25 to 4, from right to left")
     save(figure, folder, "figure-2")
     figure, panels = sheet((1, 2), (4.2, 3.0))
     _nodes(panels[0], example, "size-preserving", f"(a) size preserving, α = {example.alpha:g}, and its nodes")
@@ -95,6 +95,11 @@ def _alphas(axes: Any, example: LineExample, words: str) -> None:
     for k, (alpha, sizes) in enumerate(sorted(example.by_alpha.items())):
         grey = str(0.6 - 0.5 * k / max(len(example.by_alpha) - 1, 1))
         axes.plot(example.x, sizes, color=grey, lw=1.2)
-        at = int(np.argmax(sizes <= 0.3))
+        # one above the other, each beside its own curve
+        level = min(0.42 - 0.07 * k, float(sizes[0]))
+        at = int(np.argmax(sizes <= level))
         place = (float(example.x[at]), float(sizes[at]))
-        axes.annotate(f"α = {alpha:g}", place, xytext=(2, 4), textcoords="offset points", fontsize=7, color=grey)
+        axes.annotate(
+            f"{alpha:g}", place, xytext=(-3, -2) if at else (3, 4), textcoords="offset points", fontsize=7,
+            color=grey, ha="right" if at else "left", va="top" if at else "bottom",
+        )  # fmt: skip

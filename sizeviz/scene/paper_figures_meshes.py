@@ -11,6 +11,7 @@ from sizeviz.scene.imaging import interpolation_errors
 from sizeviz.scene.paper_figures import (
     COLORS,
     WORDS,
+    Published,
     draw_bar,
     draw_cells,
     draw_edges,
@@ -20,6 +21,7 @@ from sizeviz.scene.paper_figures import (
     title,
 )
 from sizeviz.scene.scale import ColorScale, ratio_scale
+from sizeviz.study.paper.published import PUBLISHED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,6 +35,12 @@ if TYPE_CHECKING:
 
 DETAIL = (0.7545, 0.497, 0.7605, 0.503)
 """The box around a piece of the ring that panels (b) of Figures 4 and 5 show."""
+
+LOWEST: dict[str, Published] = {"gradient-limiting": Published("the paper: never below 1.28", 1.28)}
+"""What Section 5.1 says of R against the background."""
+
+ITERATIONS: dict[str, int] = {"gradient-limiting": 50, "size-preserving": 4}
+"""How many iterations the paper's processes had."""
 
 
 def save_adaptation(found: Sequence[Adaptation], method: str, folder: Path, name: str) -> None:
@@ -58,9 +66,11 @@ def save_adaptation(found: Sequence[Adaptation], method: str, folder: Path, name
     draw_edges(panels[1], mesh, DETAIL, width=0.5)
     curves = {one.mesher: one.evolution for one in found}
     title(panels[2], "(c) R against the background of the iteration")
-    draw_evolution(panels[2], curves, "background", COLORS[method])
+    draw_evolution(panels[2], curves, "background", COLORS[method], LOWEST.get(method))
     title(panels[3], "(d) R against the analytic function")
-    draw_evolution(panels[3], curves, "analytic", COLORS[method])
+    ratio = PUBLISHED["table-1"][method]["max R(e)"]
+    reached = Published(f"the paper's last: {ratio:g}", ratio, ITERATIONS[method])
+    draw_evolution(panels[3], curves, "analytic", COLORS[method], reached)
     save(figure, folder, name)
 
 

@@ -17,7 +17,7 @@ from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.study.backgrounds import Sampling, background_of, uniform_mesh
 from sizeviz.study.evolution import Evolution, Iteration, read_evolution, write_evolution
 from sizeviz.study.options import StudyOptions
-from sizeviz.study.pipeline import METHODS, run
+from sizeviz.study.pipeline import GUARANTEED, METHODS, run
 from sizeviz.study.report import mesh_arrays, options_as_typed
 from sizeviz.study.study import Study
 
@@ -33,6 +33,11 @@ if TYPE_CHECKING:
 
 FREE: tuple[str, ...] = ("threads", "max_elements")
 """Options that do not decide the meshes."""
+
+NEARLY = 2.0
+"""Largest R of the last mesh against the given field, by the longest edge, up to which the next mesh is guaranteed.
+Above it a mesh is made by size preserving alone: its background has missed part of the field, and to find that by
+moving and inserting nodes would take far longer than the next background does."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +60,7 @@ class AdaptOptions:
     iterations : int
         Give up after this many meshes. Default 50.
     measure : {'mean-edge', 'sqrt-area', 'max-edge'}
-        Size of an element in R.
+        Size of an element in R; with the guarantee always the longest edge, and no limit above 1.
 
     Raises
     ------
@@ -79,10 +84,21 @@ class AdaptOptions:
         if not self.limit > 0:
             raise InputError(f"the limit of R is {self.limit}; it must be above 0, such as 1.1")
 
+    @property
+    def criterion(self) -> tuple[Measure, float]:
+        """The size of an element and the limit of R that end the process; what it promises where that is guaranteed."""
+        return ("max-edge", min(self.limit, 1.0)) if self.method == GUARANTEED else (self.measure, self.limit)
+
     def as_recorded(self) -> dict[str, object]:
         """Return what decides the meshes."""
         typed = {name: value for name, value in options_as_typed(self.study).items() if name not in FREE}
-        return {"method": self.method, "sampling": self.sampling, "cells": self.cells, "measure": self.measure, **typed}
+        return {
+            "method": self.method,
+            "sampling": self.sampling,
+            "cells": self.cells,
+            "measure": self.criterion[0],
+            **typed,
+        }
 
 
 def adapted(source: Source, options: AdaptOptions, out: str | Path, monitor: Monitor = SILENT) -> Evolution:
@@ -117,7 +133,8 @@ def adapted(source: Source, options: AdaptOptions, out: str | Path, monitor: Mon
             if evolution.converged:
                 break
             part = SubMonitor(monitor, number / (options.iterations + 1), (number + 1) / (options.iterations + 1))
-            mesh, row = _iterated(number, mesh, source, options, folder, part)
+            missed = number == 0 or evolution.iterations[-1].strict_ratio > NEARLY
+            mesh, row = _iterated(number, mesh, source, options, folder, part, missed=missed)
             evolution = replace(evolution, iterations=(*evolution.iterations, row))
             write_evolution(folder, evolution)
         monitor.step(1.0)
@@ -125,7 +142,7 @@ def adapted(source: Source, options: AdaptOptions, out: str | Path, monitor: Mon
 
 
 def _taken_up(source: Source, options: AdaptOptions, folder: Path) -> Evolution:
-    fresh = Evolution(source=source.name, options=options.as_recorded(), limit=options.limit)
+    fresh = Evolution(source=source.name, options=options.as_recorded(), limit=options.criterion[1])
     found = read_evolution(folder)
     if found is None:
         return fresh
@@ -139,26 +156,34 @@ def _last_mesh(evolution: Evolution, folder: Path) -> QuadMesh | None:
 
 
 def _iterated(
-    number: int, mesh: QuadMesh | None, source: Source, options: AdaptOptions, folder: Path, monitor: Monitor
+    number: int,
+    mesh: QuadMesh | None,
+    source: Source,
+    options: AdaptOptions,
+    folder: Path,
+    monitor: Monitor,
+    *,
+    missed: bool,
 ) -> tuple[QuadMesh, Iteration]:
-    """Return the next mesh, written to the folder, and its row."""
+    """Return the next mesh, written to the folder, and its row; ``missed`` says whether the last was far from it."""
     monitor.step(0.0, f"iteration {number}")
     began = time.perf_counter()
     name = f"mesh-{number:03d}.vtu"
-    beta = options.study.beta
+    beta, measure = options.study.beta, options.criterion[0]
     if mesh is None:
         made = uniform_mesh(source.domain, options.cells, options.study.mesh, monitor)
         report = judged(made, source.reference, beta=beta)
-        write_mesh(folder / name, made, _cells(report, options.measure))
-        return made, _row(number, name, report, report, options.measure, time.perf_counter() - began)
+        write_mesh(folder / name, made, _cells(report, measure))
+        return made, _row(number, name, report, report, measure, time.perf_counter() - began)
     background = background_of(mesh, source.reference, options.sampling)
-    study = run(Study(replace(source, field=background), options.study), (options.method,), SubMonitor(monitor, 0, 0.9))
-    made, cells, points = mesh_arrays(study, options.method, options.measure)
+    method = "size-preserving" if missed and options.method == GUARANTEED else options.method
+    study = run(Study(replace(source, field=background), options.study), (method,), SubMonitor(monitor, 0, 0.9))
+    made, cells, points = mesh_arrays(study, method, measure)
     against = judged(made, background, beta=beta, monitor=SubMonitor(monitor, 0.9, 1.0))
     write_mesh(folder / name, made, cells, points)
-    whole = study.runs[options.method].report
+    whole = study.runs[method].report
     assert whole is not None
-    return made, _row(number, name, against, whole, options.measure, time.perf_counter() - began)
+    return made, _row(number, name, against, whole, measure, time.perf_counter() - began)
 
 
 def _cells(report: MeshReport, measure: Measure) -> dict[str, NDArray[np.float64]]:
@@ -178,6 +203,8 @@ def _row(
         analytic_ratio=float(analytic.max_ratio[measure]),
         background_correct=float(background.correct_percent[measure]),
         analytic_correct=float(analytic.correct_percent[measure]),
+        strict_ratio=float(analytic.max_ratio["max-edge"]),
+        strict_correct=float(analytic.correct_percent["max-edge"]),
         quality_min=float(quality["min"]),
         quality_mean=float(quality["mean"]),
         quality_max=float(quality["max"]),

@@ -34,6 +34,8 @@ class Iteration:
         gave. The first mesh was made from no background: its ratio there is that against the given field.
     background_correct, analytic_correct : float
         Percentage of elements with R <= 1 against both.
+    strict_ratio, strict_correct : float
+        Largest R and percentage of correct elements against the given field by the longest edge, the strictest measure.
     quality_min, quality_mean, quality_max, quality_std : float
         Shape quality, 0 to 1.
     irregular : float
@@ -50,6 +52,8 @@ class Iteration:
     analytic_ratio: float
     background_correct: float
     analytic_correct: float
+    strict_ratio: float
+    strict_correct: float
     quality_min: float
     quality_mean: float
     quality_max: float

@@ -11,7 +11,7 @@ from PIL import Image as Picture
 from sizeviz.files import Image
 from sizeviz.geometry import Domain
 from sizeviz.meshing import MeshOptions
-from sizeviz.scene.paper_figures import COLORS, draw_evolution, inside, save_evolution, sheet
+from sizeviz.scene.paper_figures import COLORS, Published, draw_evolution, inside, painted_cells, save_evolution, sheet
 from sizeviz.scene.paper_figures_all import save_figures
 from sizeviz.scene.paper_figures_meshes import image_errors
 from sizeviz.sizing import BackgroundMesh, SizeField
@@ -88,6 +88,30 @@ def test_an_evolution_is_drawn_as_it_is(drawn):
     line = axes.get_lines()[0]
     assert line.get_xdata().tolist() == [row.number for row in rows[1:]]
     assert line.get_ydata().tolist() == [row.analytic_ratio for row in rows[1:]]
+
+
+def test_cells_painted_as_pixels():
+    corner = np.array([[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]])
+    corners = np.stack([corner, corner + (0.5, 0), corner + (0.5, 0.5)])
+    colors = np.array([[255, 0, 0], [0, 255, 0], [0, 0, 255]], dtype=np.uint8)
+    picture = painted_cells(corners, colors, (0.0, 0.0, 1.0, 1.0), pixels=40)
+    assert picture.shape == (40, 40, 3)
+    assert picture[30, 10].tolist() == [255, 0, 0]  # the highest y comes first
+    assert picture[30, 30].tolist() == [0, 255, 0]
+    assert picture[10, 30].tolist() == [0, 0, 255]
+    assert picture[10, 10].tolist() == [255, 255, 255]
+    share = (picture == colors[1]).all(axis=2).mean()
+    assert share == pytest.approx(0.25, abs=0.04)
+
+
+def test_a_published_number_is_drawn_where_it_belongs(drawn):
+    _, ring, *_ = drawn
+    _, (axes,) = sheet((1, 1))
+    draw_evolution(axes, {"": ring[0].evolution}, "analytic", "black", Published("theirs", 1.046, 4))
+    assert [line.get_xydata().tolist() for line in axes.get_lines() if line.get_label() == "theirs"] == [[[4, 1.046]]]
+    assert axes.get_ylim()[0] < 1.0
+    draw_evolution(axes, {"": ring[0].evolution}, "analytic", "black", Published("bound", 99.0))
+    assert axes.get_ylim()[1] > 99.0
 
 
 def test_elements_inside_a_box():

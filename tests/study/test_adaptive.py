@@ -18,6 +18,7 @@ from sizeviz.study import StudyOptions
 from sizeviz.study.adaptive import AdaptOptions, adapted
 from sizeviz.study.backgrounds import background_of, uniform_mesh
 from sizeviz.study.evolution import read_evolution
+from sizeviz.study.pipeline import GUARANTEED
 
 FINEST = 0.01
 
@@ -52,6 +53,15 @@ def test_size_preserving_converges(finished):
     assert [row.number for row in evolution.iterations] == list(range(len(evolution.iterations)))
     assert evolution.iterations[0].n_quads == 144
     assert all(row.analytic_ratio > 1.1 for row in evolution.iterations[:-1])
+
+
+def test_the_guarantee_ends_with_every_element_correct(tmp_path):
+    evolution = adapted(ring_source(), options(method=GUARANTEED, study=StudyOptions()), tmp_path)
+    last = evolution.iterations[-1]
+    assert evolution.converged and evolution.limit == 1.0
+    assert last.strict_correct == 100.0 and last.analytic_ratio == last.strict_ratio <= 1.0
+    report = judged(read_mesh(tmp_path / last.mesh).mesh, ring_source().reference)
+    assert report.correct_percent["max-edge"] == 100.0
 
 
 def test_the_record_says_what_the_meshes_are(finished):

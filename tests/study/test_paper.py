@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,15 @@ import pytest
 from sizeviz.errors import InputError
 from sizeviz.files import Image
 from sizeviz.geometry import Domain, QuadMesh
-from sizeviz.sizing import BackgroundMesh, SizeField
+from sizeviz.sizing import (
+    BackgroundMesh,
+    LimitOptions,
+    PreserveOptions,
+    SizeField,
+    ideal_count,
+    limited,
+    preserved,
+)
 from sizeviz.sources import Source
 from sizeviz.study import COMPARED, Study, StudyOptions, run
 from sizeviz.study.evolution import Evolution, Iteration
@@ -26,16 +35,19 @@ from sizeviz.study.paper import (
     line_example,
     ring_table,
 )
-from sizeviz.study.paper.images import EQUAL_COUNT, image_runs
+from sizeviz.study.paper.images import EQUAL_COUNT, image_runs, image_source
+from sizeviz.study.paper.published import STRICT
 from sizeviz.study.paper.summary import summary
 from sizeviz.study.paper.tables import shown
+from sizeviz.study.pipeline import GUARANTEED
 
 
 def adaptation(method: str, mesher: str, ratios: tuple[float, ...]) -> Adaptation:
     rows = tuple(
         Iteration(
             number=k, mesh=f"mesh-{k:03d}.vtu", n_quads=1000 * (k + 1), n_nodes=1100 * (k + 1), background_ratio=1.3,
-            analytic_ratio=ratio, background_correct=90.0, analytic_correct=99.95, quality_min=0.4, quality_mean=0.9,
+            analytic_ratio=ratio, background_correct=90.0, analytic_correct=99.95, strict_ratio=1.2,
+            strict_correct=98.0, quality_min=0.4, quality_mean=0.9,
             quality_max=1.0, quality_std=0.1, irregular=20.0, seconds=2.0,
         )
         for k, ratio in enumerate(ratios)
@@ -96,11 +108,40 @@ def test_tables_hold_the_published_columns():
     rows = list(csv.reader(io.StringIO(table.as_csv())))
     assert rows[0][1:] == ["gradient-limiting"] * 2 + ["size-preserving"] * 2
     assert rows[1][1:] == ["published", "decomposition"] * 2
-    assert [row[0] for row in rows[2:]] == list(ROWS)
+    assert [row[0] for row in rows[2:]] == [*ROWS, *STRICT]
     assert rows[2][1:] == ["64845", "3000", "111092", "2000"]
     assert rows[5][2] == "1.500" and rows[5][4] == "1.050"
     latex = table.as_latex()
     assert latex.count(r"\\") == len(rows) and r"99.770" in latex and "%)" not in latex.replace(r"\%", "")
+
+
+def test_the_guarantee_has_a_column_of_its_own(images):
+    table = ring_table([*RING, adaptation(GUARANTEED, "frontal", (50.0, 1.0))])
+    rows = list(csv.reader(io.StringIO(table.as_csv())))
+    assert (rows[0][-1], rows[1][-1]) == (GUARANTEED, "frontal")
+    by_name = {row[0]: row[1:] for row in rows}
+    assert by_name["max R(e), longest edge"] == ["", "1.200", "", "1.200", "1.200"]
+    assert r"\multicolumn{1}{c}{guaranteed}" in table.as_latex()
+    study = run(Study(images[0].source, StudyOptions()), (GUARANTEED,))
+    one = replace(images[0], runs={**images[0].runs, GUARANTEED: study.runs[GUARANTEED]})
+    column = image_table([one]).columns[GUARANTEED, "frontal"]
+    assert column["correct faces (%)"] == column["correct faces, longest edge (%)"] == 100.0
+    assert "time (s)" not in column
+    assert PaperOptions().methods("frontal") == (*COMPARED, GUARANTEED)
+    assert PaperOptions().methods("decomposition") == COMPARED
+
+
+def test_sizes_vary_over_the_image():
+    source = image_source("mri")
+    assert np.mean(source.field.sizes == source.field.sizes.min()) < 1e-3
+    ideal = {
+        name: ideal_count(process(source.field), source.domain)
+        for name, process in (
+            ("limited", lambda field: limited(field, LimitOptions(epsilon=0.5))),
+            ("preserved", lambda field: preserved(field, PreserveOptions(alpha=2.0))),
+        )
+    }
+    assert ideal["preserved"] > 1.4 * ideal["limited"]
 
 
 def test_the_published_percentages_follow_from_the_counts():

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from sizeviz.errors import Cancelled
-from sizeviz.study.paper.together import threads_each, together
+from sizeviz.study.paper.together import together
 
 
 def counting(steps: int, stopped: list[str], name: str):
@@ -61,7 +61,3 @@ def test_a_failure_stops_the_others():
     with pytest.raises(ValueError, match="broken"):
         together([counting(1000, stopped, "one"), failing])
     assert stopped == ["one"]
-
-
-def test_threads_are_shared():
-    assert [threads_each(2, 8), threads_each(3, 2), threads_each(1, 4)] == [4, 1, 4]

@@ -1,4 +1,4 @@
-"""Section 5.1: the adaptive process on the ring, by both methods and every mesher."""
+"""Section 5.1: the adaptive process on the ring, by both methods and every mesher; and with the guarantee."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sources import load
 from sizeviz.study.adaptive import AdaptOptions, adapted
 from sizeviz.study.paper.together import together
-from sizeviz.study.pipeline import COMPARED
+from sizeviz.study.pipeline import GUARANTEED
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from sizeviz.study.evolution import Evolution
     from sizeviz.study.paper.options import PaperOptions
 
-SHARE: dict[str, float] = {"gradient-limiting": 0.85, "size-preserving": 0.15}
-"""How the time is divided: one method uses all the iterations there are, the other a few."""
+WEIGHT: dict[str, float] = {"gradient-limiting": 8.0, "size-preserving": 1.0, GUARANTEED: 1.0}
+"""How the time is divided: one method uses all the iterations there are, the others a few."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,12 +67,13 @@ def adaptations(options: PaperOptions, folder: Path, monitor: Monitor = SILENT) 
 def _by_mesher(
     source: Source, mesher: str, options: PaperOptions, folder: Path, monitor: Monitor = SILENT
 ) -> list[Adaptation]:
-    found, begun = [], 0.0
-    for method in COMPARED:
+    found, begun, methods = [], 0.0, options.methods(mesher)
+    whole = sum(WEIGHT[method] for method in methods)
+    for method in methods:
         asked = AdaptOptions(method=method, study=options.study(mesher), iterations=options.iterations)
         place = folder / f"ring-{method}-{mesher}"
-        share = SubMonitor(monitor, begun, begun + SHARE[method])
+        share = SubMonitor(monitor, begun, begun + WEIGHT[method] / whole)
         found.append(Adaptation(mesher, method, adapted(source, asked, place, share), place))
-        begun += SHARE[method]
+        begun += WEIGHT[method] / whole
     monitor.step(1.0)
     return found

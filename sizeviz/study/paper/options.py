@@ -8,10 +8,13 @@ from sizeviz.errors import InputError
 from sizeviz.meshing import GENERATORS, MeshOptions
 from sizeviz.sizing import LimitOptions, PreserveOptions
 from sizeviz.study.options import StudyOptions
-from sizeviz.study.paper.together import threads_each
+from sizeviz.study.pipeline import COMPARED, GUARANTEED
 
 MESHERS: tuple[str, ...] = ("decomposition", "frontal")
 """The paper's own kind of mesher, and ours."""
+
+GUARANTEEING = "frontal"
+"""The mesher whose meshes are also made with the guarantee."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +30,8 @@ class PaperOptions:
     meshers : tuple of str
         Keys of ``GENERATORS``.
     threads : int, optional
-        Worker threads; every core by default. The meshers run side by side and share them.
+        Worker threads of each mesher; every core by default. The meshers run side by side: while one works on a single
+        core, the other has the rest.
 
     Raises
     ------
@@ -55,5 +59,9 @@ class PaperOptions:
             limit=LimitOptions(epsilon=0.5),
             preserve=PreserveOptions(alpha=2.0),
             mesh=MeshOptions(mesher=mesher, scale=self.scale),
-            threads=threads_each(len(self.meshers), self.threads),
+            threads=self.threads,
         )
+
+    def methods(self, mesher: str) -> tuple[str, ...]:
+        """Return the methods that a mesher's meshes are made with."""
+        return (*COMPARED, GUARANTEED) if mesher == GUARANTEEING else COMPARED

@@ -19,6 +19,9 @@ ROWS: tuple[str, ...] = (
 )
 """The rows that both tables have, in their order."""
 
+STRICT: tuple[str, ...] = ("max R(e), longest edge", "correct faces, longest edge (%)")
+"""Rows that only our columns have: both by the strictest size of an element."""
+
 SECONDS = "time (s)"
 """The last row of Table 2: how long the field takes."""
 

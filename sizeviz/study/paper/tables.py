@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sizeviz.files import replacing
-from sizeviz.study.paper.published import PUBLISHED, ROWS, SECONDS
-from sizeviz.study.pipeline import COMPARED
+from sizeviz.study.paper.published import PUBLISHED, ROWS, SECONDS, STRICT
+from sizeviz.study.pipeline import COMPARED, GUARANTEED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +42,7 @@ class Table:
     @property
     def rows(self) -> list[str]:
         """The rows that any column has, in the paper's order."""
-        return [row for row in (*ROWS, SECONDS) if any(row in column for column in self.columns.values())]
+        return [row for row in (*ROWS, *STRICT, SECONDS) if any(row in column for column in self.columns.values())]
 
     def cells(self, row: str) -> list[str]:
         """Return one row as text, a cell a column."""
@@ -65,13 +66,15 @@ class Table:
 
     def as_latex(self) -> str:
         """Return a ``table`` environment."""
-        count = len(self.columns) // len(COMPARED)
+        counts = Counter(method for method, _ in self.columns)
         lines = [
             r"\begin{table}",
             rf"\caption{{{_escaped(self.title)}}}",
             rf"\begin{{tabular}}{{l*{{{len(self.columns)}}}{{r}}}}",
         ]
-        lines.append(" & ".join(["", *(rf"\multicolumn{{{count}}}{{c}}{{{method}}}" for method in COMPARED)]) + r" \\")
+        lines.append(
+            " & ".join(["", *(rf"\multicolumn{{{n}}}{{c}}{{{method}}}" for method, n in counts.items())]) + r" \\"
+        )
         lines.append(" & ".join(["", *(whose for _, whose in self.columns)]) + r" \\ \hline")
         lines += [" & ".join([_escaped(row), *self.cells(row)]) + r" \\" for row in self.rows]
         return "\n".join([*lines, r"\end{tabular}", r"\end{table}", ""])
@@ -93,7 +96,12 @@ def ring_table(found: Sequence[Adaptation]) -> Table:
 
 def image_table(found: Sequence[ImageRun], name: str = "table-2") -> Table:
     """Return Table 2, or the same of another image."""
-    ours = {(method, one.mesher): _run_column(one, method) for one in found for method in COMPARED}
+    ours = {
+        (method, one.mesher): _run_column(one, method)
+        for method in (*COMPARED, GUARANTEED)
+        for one in found
+        if method in one.runs
+    }
     return _table(name, f"Statistics for the meshes generated for {found[0].source.label}", "table-2", ours)
 
 
@@ -111,6 +119,7 @@ def _table(name: str, title: str, published: str, ours: dict[tuple[str, str], di
     for method in COMPARED:
         columns[method, "published"] = PUBLISHED[published][method]
         columns |= {key: column for key, column in ours.items() if key[0] == method}
+    columns |= {key: column for key, column in ours.items() if key[0] == GUARANTEED}
     return Table(name, title, columns)
 
 
@@ -126,13 +135,15 @@ def _last_row(evolution: Evolution) -> dict[str, float]:
         last.quality_mean,
         last.quality_std,
     )
-    return dict(zip(ROWS, numbers, strict=True))
+    return dict(zip((*ROWS, *STRICT), (*numbers, last.strict_ratio, last.strict_correct), strict=True))
 
 
 def _run_column(one: ImageRun, method: str) -> dict[str, float]:
     report = one.runs[method].report
     assert report is not None
-    return {**report.table(), SECONDS: one.field_seconds[method]}
+    column = report.table("max-edge" if method == GUARANTEED else "mean-edge")
+    column |= zip(STRICT, (report.max_ratio["max-edge"], report.correct_percent["max-edge"]), strict=True)
+    return {**column, SECONDS: one.field_seconds[method]} if method in one.field_seconds else column
 
 
 def _escaped(text: str) -> str:

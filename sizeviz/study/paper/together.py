@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, TypeVar
 
 from sizeviz.errors import Cancelled
 from sizeviz.monitor import SILENT, Monitor
-from sizeviz.threads import default_threads
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -66,8 +65,3 @@ def together(jobs: Sequence[Callable[[Monitor], Result]], monitor: Monitor = SIL
                 relay.stopped.set()
             raise
     return [one.result() for one in running]
-
-
-def threads_each(jobs: int, threads: int | None) -> int:
-    """Return the worker threads that each of some jobs gets."""
-    return max(1, (threads or default_threads()) // max(jobs, 1))
