@@ -92,7 +92,7 @@ def test_an_evolution_is_drawn_as_it_is(drawn):
 
 def test_cells_painted_as_pixels():
     corner = np.array([[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]])
-    corners = np.stack([corner, corner + [0.5, 0.0], corner + [0.5, 0.5]])
+    corners = np.stack([corner + shift for shift in ([0, 0], [0.5, 0], [0.5, 0.5])])
     colors = np.array([[255, 0, 0], [0, 255, 0], [0, 0, 255]], dtype=np.uint8)
     picture = painted_cells(corners, colors, (0.0, 0.0, 1.0, 1.0), pixels=40)
     assert picture.shape == (40, 40, 3)
