@@ -117,6 +117,7 @@ class Renderer:
         actor.prop.SetLighting(False)
         if texture is not None:
             actor.SetTexture(texture)
+            actor.prop.SetColor(1.0, 1.0, 1.0)  # the texture is multiplied by it
         if isinstance(layer, LineLayer):
             actor.prop.SetColor(*_unit(layer.color))
             actor.prop.SetLineWidth(layer.width if layer.colors is None else 1.0)
