@@ -83,6 +83,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("unpin", "Let go of the pinned element", "Inspect", "P"),
     Command("copy-table", "Copy the table as Markdown", "Inspect", "Ctrl+Shift+C"),
     Command("lesson-line", "Lesson: sizes on a line", "Learn", "F2"),
+    Command("lesson-process", "Lesson: the adaptive process", "Learn", "F3"),
     Command("why", "Why is h* this here?", "Learn", "H"),
     Command("explain", "Explain what is shown", "Learn", "F1"),
     Command("presenter", "Presenter mode: large type", "Learn", "F11", True),

@@ -102,7 +102,7 @@ class MainWindow(QMainWindow):
         self.overlay = ShortcutOverlay(self.actions_, self)
         connect_panels(self)
         connect_actions(self)
-        self.lessons = Lessons(self)
+        self.lessons = Lessons(self, make_canvas)
         self.set_theme(self.theme)
         self._laid_out = self.settings.restore_layout(self)
         if not self._laid_out:

@@ -9,19 +9,24 @@ from qtpy.QtWidgets import QApplication, QMenu, QToolButton
 
 from sizeviz.app.lessons.in_panes import PaneLessons
 from sizeviz.app.lessons.line_page import LineController, LinePage
+from sizeviz.app.lessons.process import ProcessController
+from sizeviz.app.lessons.process_page import ProcessPage
 from sizeviz.app.theme import apply_theme
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from qtpy.QtWidgets import QWidget
 
     from sizeviz.app.lessons.page import LessonPage
+    from sizeviz.app.panes.canvas import Canvas
     from sizeviz.app.theme import Theme
     from sizeviz.app.window import MainWindow
 
 PRESENTER_SCALE = 1.5
 """How much larger words are in presenter mode."""
 
-LEARN: tuple[str, ...] = ("lesson-line", "why", "explain")
+LEARN: tuple[str, ...] = ("lesson-line", "lesson-process", "why", "explain")
 """Commands in the menu Learn, in order."""
 
 
@@ -32,20 +37,25 @@ class Lessons(QObject):
     ----------
     window : MainWindow
         Which.
+    make_canvas : callable
+        Makes the drawing widget of a lesson's pane.
     """
 
-    def __init__(self, window: MainWindow) -> None:
+    def __init__(self, window: MainWindow, make_canvas: Callable[[QWidget], Canvas]) -> None:
         super().__init__(window)
-        self._window = window
+        self._window, self._make_canvas = window, make_canvas
         self._page_before: QWidget | None = None
         self._hidden: list[QWidget] = []
         self.type_scale = 1.0
         self.line = LineController(self)
         self._line_page: LinePage | None = None
+        self.process = ProcessController(window.controller, parent=self)
+        self._process_page: ProcessPage | None = None
         self.panes = PaneLessons(window)
         self._add_menu()
         on = window.actions_.on
         on("lesson-line", self.open_line)
+        on("lesson-process", self.open_process)
         on("why", self.panes.ask)
         on("explain", self.panes.explain)
         on("presenter", self.set_presenter)
@@ -65,6 +75,18 @@ class Lessons(QObject):
     def open_line(self) -> None:
         """Open the lesson on a line."""
         self._open(self.line_page)
+
+    @property
+    def process_page(self) -> ProcessPage:
+        """The player of the adaptive process, made when it is first needed."""
+        if self._process_page is None:
+            self._process_page = ProcessPage(self.process, self._window.controller, self._make_canvas)
+            self._adopt(self._process_page)
+        return self._process_page
+
+    def open_process(self) -> None:
+        """Open the player of the adaptive process."""
+        self._open(self.process_page)
 
     def leave(self) -> None:
         """Go back to what was there before the lesson."""
@@ -101,6 +123,9 @@ class Lessons(QObject):
         """Stop what moves by itself, and give the application its usual type back."""
         if self._line_page is not None:
             self._line_page.transport.stop()
+        if self._process_page is not None:
+            self._process_page.dispose()
+        self.process.close()
         self.panes.panel.transport.stop()
         if self.type_scale != 1.0:
             apply_theme(QApplication.instance(), self._window.theme, 1.0)
@@ -108,7 +133,7 @@ class Lessons(QObject):
     # -- inside ----------------------------------------------------------------------------------------------------
 
     def _pages(self) -> list[LessonPage]:
-        return [page for page in (self._line_page,) if page is not None]
+        return [page for page in (self._line_page, self._process_page) if page is not None]
 
     def _adopt(self, page: LessonPage) -> None:
         page.set_theme(self._window.theme, self.type_scale)
