@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
+from sizeviz.cli.terminal import notice
+
 if TYPE_CHECKING:
     from sizeviz.geometry import Domain
     from sizeviz.sources import Source
@@ -146,4 +148,6 @@ def loaded(source: str, options: FieldOptions) -> Source:
     from sizeviz.sources import load
 
     domain: Domain | None = None if options.domain is None else read_domain(options.domain)
+    for note in domain.notes if domain is not None else ():
+        notice(f"{options.domain}: {note}")
     return load(source, domain)

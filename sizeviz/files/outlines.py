@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,18 +67,20 @@ def domain_from_loops(loops: Sequence[NDArray[np.float64]], label: str, options:
     check_nodes(sum(map(len, loops)), "vertices", MAX_OUTLINE)
     check_nodes(len(loops), "loops", MAX_LOOPS)
     rings = [ring for ring in map(closed, loops) if len(ring) >= 3]
+    notes = _dropped(loops, rings)
     rings.sort(key=lambda ring: -abs(signed_area(ring)))
     if not rings:
         raise InputError("it holds no loop of three or more points; list the vertices of the outline in order")
     whole = Polygon(rings[0], rings[1:])
     if whole.is_valid and whole.area > 0:
-        return Domain(rings[0], tuple(rings[1:]), label=one_line(label))
+        return Domain(rings[0], tuple(rings[1:]), label=one_line(label), notes=notes)
     check_nodes(len(rings), "loops that cross or nest", _MAX_CROSSING)
     _check_crossings(rings)
     inside = _mended(Polygon(rings[0]))
     for ring in rings[1:]:
         inside = inside.symmetric_difference(_mended(Polygon(ring)))
-    return domain_from_polygons([inside], (), (), label, options)
+    notes += ("its loops cross themselves or each other, or nest: what an odd number of them encloses was kept",)
+    return replace(domain_from_polygons([inside], (), (), label, options), notes=notes)
 
 
 def domain_from_polygons(
@@ -89,10 +92,12 @@ def domain_from_polygons(
 ) -> Domain:
     """Return the domain that shapely polygons make together, mended where they cross themselves or overlap.
 
+    Edges that two of them share become inner lines, so that each stays a region of its own.
+
     Parameters
     ----------
     polygons : sequence of shapely Polygon or MultiPolygon
-        Regions; those that touch along an edge or overlap are joined.
+        Regions; those that overlap are joined.
     lines : sequence of (K, 2) float64
         Inner lines.
     points : sequence of (2,) float64
@@ -115,7 +120,14 @@ def domain_from_polygons(
     # A sound polygon is taken as it is: joining could move where its loops begin.
     if sole is None:
         _check_crossings([ring for polygon in polygons for ring in _rings(polygon)])
-    whole = unary_union([_mended(polygon) for polygon in polygons]) if sole is None else sole
+    sound = [_mended(polygon) for polygon in polygons]
+    whole = unary_union(sound) if sole is None else sole
+    notes = []
+    if any(not polygon.is_valid for polygon in polygons):
+        notes.append("a polygon crosses or touches itself: what its loops enclose was kept")
+    overlap = sum(polygon.area for polygon in sound) - whole.area
+    if overlap > 1e-9 * whole.area:
+        notes.append("polygons overlap: they were joined")
     regions = [part for part in getattr(whole, "geoms", [whole]) if part.geom_type == "Polygon" and part.area > 0]
     if not regions:
         raise InputError("it outlines no area; give at least one closed loop")
@@ -125,6 +137,9 @@ def domain_from_polygons(
         n = len(regions)
         raise InputError(f"it holds {n} separate region(s); one domain is supported: choose a part from 1 to {n}")
     region = regions[part - 1]
+    seams = _seams(sound, region) if overlap <= 1e-9 * whole.area and len(sound) > 1 else []
+    if seams:
+        notes.append(f"regions share edges: they are kept as {len(seams)} inner line(s)")
     for line in lines:
         if not (len(line) >= 2 and region.covers(LineString(line))):
             raise InputError("a line in it leaves the region; only lines inside can be kept as element edges")
@@ -134,10 +149,35 @@ def domain_from_polygons(
     return Domain(
         _ring(region.exterior),
         tuple(_ring(hole) for hole in region.interiors),
-        lines=tuple(lines),
+        lines=(*lines, *seams),
         fixed_points=np.array(points).reshape(-1, 2),
         label=one_line(label),
+        notes=tuple(notes),
     )
+
+
+def _seams(polygons: Sequence[Any], region: Any) -> list[NDArray[np.float64]]:
+    """Return the edges that polygons share within a region, joined to lines."""
+    from shapely import line_merge, unary_union
+
+    inner = unary_union([polygon.boundary for polygon in polygons]).difference(region.boundary).intersection(region)
+    merged = line_merge(inner) if inner.geom_type == "MultiLineString" else inner
+    parts = [part for part in getattr(merged, "geoms", [merged]) if part.geom_type == "LineString" and part.length > 0]
+    return [np.asarray(part.coords, dtype=np.float64)[:, :2] for part in parts]
+
+
+def _dropped(loops: Sequence[NDArray[np.float64]], kept: Sequence[NDArray[np.float64]]) -> tuple[str, ...]:
+    """Return a note where loops without an area, or vertices that repeat others, were left out."""
+    notes = []
+    # that a loop's first vertex comes once more at its end is how most files close it: nothing to speak of
+    usual = sum(len(loop) - int(len(loop) > 1 and np.array_equal(loop[0], loop[-1])) for loop in loops)
+    small = len(loops) - len(kept)
+    repeated = usual - sum(map(len, kept))
+    if small:
+        notes.append(f"{small} loop(s) of fewer than three vertices were left out")
+    elif repeated:
+        notes.append(f"{repeated} repeated vertices were left out")
+    return tuple(notes)
 
 
 def domain_of(raw: RawMesh, label: str, options: ReadOptions) -> Domain:

@@ -71,6 +71,8 @@ class Domain:
         Inner points at which a node must lie.
     label : str
         What to call the domain in messages.
+    notes : tuple of str
+        What was mended when it was read, in plain words; empty where nothing was.
 
     Raises
     ------
@@ -84,6 +86,7 @@ class Domain:
     lines: tuple[NDArray[np.float64], ...] = ()
     fixed_points: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
     label: str = "domain"
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         loops = [_clean_loop(self.outer, f"{self.label}: outer loop")]

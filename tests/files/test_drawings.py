@@ -46,8 +46,23 @@ def test_regions_that_touch_are_joined_and_lines_and_points_kept(tmp_path: Path)
     domain = read_domain(tmp_path / "d.json")
     assert domain.area == pytest.approx(5.75)
     assert len(domain.holes) == 1
-    assert [line.tolist() for line in domain.lines] == [[[2.2, 0.5], [2.8, 1.5]]]
+    assert domain.lines[0].tolist() == [[2.2, 0.5], [2.8, 1.5]]
+    assert [sorted(line.tolist()) for line in domain.lines[1:]] == [[[2.0, 0.0], [2.0, 2.0]]]
+    assert domain.notes == ("regions share edges: they are kept as 1 inner line(s)",)
     assert domain.fixed_points.tolist() == [[1.5, 1.5]]
+
+
+def test_what_was_mended_is_said(tmp_path: Path) -> None:
+    other = [[x + 1, y] for x, y in SQUARE]
+    overlapping = from_geojson(tmp_path, {"type": "MultiPolygon", "coordinates": [[SQUARE], [other]]})
+    assert overlapping.notes == ("polygons overlap: they were joined",)
+    assert overlapping.area == pytest.approx(6.0)
+    assert not overlapping.lines
+    bow = from_geojson(tmp_path, polygon([[0, 0], [2, 0], [2, 2], [1, -1], [0, 2], [0, 0]]), ReadOptions(part=1))
+    assert any("crosses or touches itself" in note for note in bow.notes)
+    assert from_geojson(tmp_path, polygon(SQUARE, HOLE)).notes == ()
+    twice = from_svg(tmp_path, '<path d="M0 0 L4 0 L4 0 L4 4 L0 4 Z"/>')
+    assert twice.area == pytest.approx(16.0)
 
 
 def test_separate_regions_need_a_choice(tmp_path: Path) -> None:
