@@ -46,10 +46,12 @@ def launch(source: str | None, grab: str | None) -> int:
     sys.setswitchinterval(SWITCH_SECONDS)
     app = application()
     from sizeviz.app.engine import PipelineEngine
+    from sizeviz.app.signals import EndRequests
     from sizeviz.app.window import MainWindow
 
     window = MainWindow(PipelineEngine())
     _catch_errors(window)
+    requests = EndRequests(window.close)
     if grab is not None:
         window.resize(*GRAB_SIZE)
     window.show()
@@ -59,6 +61,7 @@ def launch(source: str | None, grab: str | None) -> int:
     if grab is not None:
         _grab_when_settled(window, grab, code)
     status = app.exec() if hasattr(app, "exec") else app.exec_()
+    requests.stop()
     return int(status) or code[0]
 
 

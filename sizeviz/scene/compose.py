@@ -196,10 +196,22 @@ def _field_colors(field: SizeField, scale: ColorScale) -> NDArray[np.uint8]:
     for known, known_scale, colors in _RECENT:
         if known is field and known_scale == scale:
             return colors
-    colors = read_only(scale.colors(field.sizes))
+    colors = read_only(_changed_colors(field, scale))
     _RECENT.insert(0, (field, scale, colors))
     del _RECENT[4:]
     return colors
+
+
+def _changed_colors(field: SizeField, scale: ColorScale) -> NDArray[np.uint8]:
+    """Return a field's colours; those of nodes that have not changed are taken from the last one, as under a brush."""
+    for known, known_scale, old in _RECENT:
+        if known.background is field.background and known_scale == scale:
+            changed = np.flatnonzero(known.sizes != field.sizes)
+            if 2 * len(changed) < len(field.sizes):
+                colors = old.copy()
+                colors[changed] = scale.colors(field.sizes[changed])
+                return colors
+    return scale.colors(field.sizes)
 
 
 def _mesh_layers(

@@ -33,22 +33,26 @@ class Renderer:
         self._plotter = plotter
         self._shown: dict[str, tuple[Layer, Any, Any]] = {}
         self.spec: SceneSpec | None = None
+        self._edges = False
         plotter.enable_parallel_projection()
         plotter.remove_all_lights()
 
-    def show(self, spec: SceneSpec) -> None:
-        """Bring the plotter to a scene; the caller decides when to draw."""
+    def show(self, spec: SceneSpec) -> bool:
+        """Bring the plotter to a scene; the caller decides when to draw. Return whether there is anything to draw."""
         if spec is self.spec:
-            return
-        if self.spec is None or spec.ground != self.spec.ground:
+            return False
+        differs = self.spec is None or spec.ground != self.spec.ground
+        if differs:
             self._plotter.set_background([channel / 255.0 for channel in spec.ground])
         gone = self._shown.keys() - {layer.name for layer in spec.layers}
         for name in gone:
             self._remove(name)
         for order, layer in enumerate(spec.layers):
-            self._show_layer(layer, order)
-        self.show_edges(any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers))
+            differs |= self._show_layer(layer, order)
+        edges = any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers)
+        differs |= self.show_edges(edges)
         self.spec = spec
+        return differs or bool(gone)
 
     def look(self, camera: Camera2D) -> None:
         """Point the plotter's camera; the caller decides when to draw."""
@@ -61,44 +65,31 @@ class Renderer:
         for order, name in enumerate(self._shown):
             self._shown[name][2].SetPosition(0.0, 0.0, order * LIFT * camera.height)
 
-    def show_edges(self, visible: bool) -> None:
-        """Draw or hide the element edges, and what goes with them, without composing anew."""
+    def show_edges(self, visible: bool) -> bool:
+        """Draw or hide the element edges, and what goes with them, without composing anew; return whether it differs."""
+        differs = visible != self._edges
+        self._edges = visible
         for layer, _, actor in self._shown.values():
             if isinstance(layer, CellLayer):
                 actor.prop.SetEdgeVisibility(visible)
             elif isinstance(layer, LineLayer) and layer.near:
                 actor.SetVisibility(visible)
+        return differs
 
-    def _show_layer(self, layer: Layer, order: int) -> None:
+    def _show_layer(self, layer: Layer, order: int) -> bool:
         old = self._shown.get(layer.name)
         if old is not None and _same_geometry(old[0], layer):
-            self._recolor(old, layer)
-            return
+            self._shown[layer.name] = (layer, *old[1:])
+            if _same_look(old[0], layer):
+                return False
+            _recolor(layer, *old[1:])
+            return True
         self._remove(layer.name)
         data, texture = _dataset(layer)
         actor = self._add(layer, data, texture)
         actor.SetPosition(0.0, 0.0, order * LIFT * 2.0 * self._plotter.camera.GetParallelScale())
         self._shown[layer.name] = (layer, data, actor)
-
-    def _recolor(self, old: tuple[Layer, Any, Any], layer: Layer) -> None:
-        _, data, actor = old
-        if isinstance(layer, CellLayer) and isinstance(old[0], CellLayer):
-            if layer.colors is not old[0].colors and not np.array_equal(layer.colors, old[0].colors):
-                data.cell_data["rgb"] = layer.colors
-            if layer.edges is not None:
-                actor.prop.SetEdgeColor(*_unit(layer.edges))
-        elif isinstance(layer, TriangleLayer):
-            data.point_data["rgb"] = layer.colors
-        elif isinstance(layer, ImageLayer) and isinstance(old[0], ImageLayer):
-            # a view of the same read-only colours is the same picture
-            if not np.shares_memory(layer.colors, old[0].colors):
-                actor.SetTexture(_texture(layer.colors))
-        elif isinstance(layer, LineLayer):
-            actor.prop.SetColor(*_unit(layer.color))
-            actor.prop.SetLineWidth(layer.width)
-            if layer.colors is not None:
-                data.cell_data["rgb"] = layer.colors
-        self._shown[layer.name] = (layer, data, actor)
+        return True
 
     def _add(self, layer: Layer, data: Any, texture: Any) -> Any:
         """Add an actor by VTK's own means: pyvista's takes three times as long, for what is not used here."""
@@ -130,6 +121,36 @@ class Renderer:
     def _remove(self, name: str) -> None:
         if name in self._shown:
             self._plotter.renderer.RemoveActor(self._shown.pop(name)[2])
+
+
+def _recolor(layer: Layer, data: Any, actor: Any) -> None:
+    """Give what is shown of a layer its new colours."""
+    if isinstance(layer, CellLayer):
+        data.cell_data["rgb"] = layer.colors
+        if layer.edges is not None:
+            actor.prop.SetEdgeColor(*_unit(layer.edges))
+    elif isinstance(layer, TriangleLayer):
+        data.point_data["rgb"] = layer.colors
+    elif isinstance(layer, ImageLayer):
+        image = actor.GetTexture().GetInput()
+        image.point_data["rgb"] = layer.colors.reshape(-1, 3)
+    else:
+        actor.prop.SetColor(*_unit(layer.color))
+        actor.prop.SetLineWidth(layer.width)
+        if layer.colors is not None:
+            data.cell_data["rgb"] = layer.colors
+
+
+def _same_look(old: Layer, new: Layer) -> bool:
+    """Return whether two layers of the same geometry have the same colours and lines."""
+    if isinstance(old, LineLayer) and isinstance(new, LineLayer) and (old.color, old.width) != (new.color, new.width):
+        return False
+    if isinstance(old, CellLayer) and isinstance(new, CellLayer) and old.edges != new.edges:
+        return False
+    if old.colors is new.colors or old.colors is None or new.colors is None:
+        return True
+    # a view of the same read-only colours is the same picture
+    return np.shares_memory(old.colors, new.colors) or np.array_equal(old.colors, new.colors)
 
 
 def _same_geometry(old: Layer, new: Layer) -> bool:
@@ -182,7 +203,11 @@ def _picture_plane(layer: ImageLayer) -> Any:
 def _texture(colors: NDArray[np.uint8]) -> Any:
     import pyvista
 
-    texture = pyvista.Texture(np.ascontiguousarray(colors[::-1]))
+    rows, columns = colors.shape[:2]
+    image = pyvista.ImageData(dimensions=(columns, rows, 1))
+    image.point_data["rgb"] = colors.reshape(-1, 3)  # row 0 is the lowest here, and in VTK
+    texture = pyvista.Texture()
+    texture.SetInputDataObject(image)
     texture.SetInterpolate(True)
     texture.SetRepeat(False)
     return texture

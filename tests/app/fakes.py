@@ -103,7 +103,6 @@ class FlatCanvas:
         self.spec = None
         self.camera = None
         self.edges = False
-        self.refreshes = 0
         self.disposed = False
 
     def widget(self) -> QWidget:
@@ -117,9 +116,6 @@ class FlatCanvas:
 
     def show_edges(self, visible: bool) -> None:
         self.edges = visible
-
-    def refresh(self) -> None:
-        self.refreshes += 1
 
     def dispose(self) -> None:
         self.disposed = True

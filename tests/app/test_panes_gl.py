@@ -91,7 +91,7 @@ def test_memory_stays_flat_over_many_studies(window) -> None:
 
 def test_vtk_is_only_touched_in_the_windows_thread(window, monkeypatch) -> None:
     threads: set[int] = set()
-    for name in ("show_scene", "look", "refresh", "show_edges"):
+    for name in ("show_scene", "look", "show_edges"):
         original = getattr(GLCanvas, name)
 
         def watched(self, *args, original=original):

@@ -20,16 +20,13 @@ class Canvas(Protocol):
         """Return the widget to lay out."""
 
     def show_scene(self, spec: SceneSpec) -> None:
-        """Take another scene; it is drawn at the next refresh."""
+        """Take another scene; it is drawn as soon as the event loop comes round."""
 
     def look(self, camera: Camera2D) -> None:
         """Look elsewhere."""
 
     def show_edges(self, visible: bool) -> None:
         """Draw or hide the element edges."""
-
-    def refresh(self) -> None:
-        """Draw as soon as the event loop comes round, once for any number of calls."""
 
     def dispose(self) -> None:
         """Free what VTK holds."""
@@ -38,8 +35,7 @@ class Canvas(Protocol):
 class GLCanvas:
     """The canvas of the real window.
 
-    It draws only when asked to: pyvistaqt's own timer is off, so an idle window costs nothing, and ``update`` draws
-    once where ``render`` would draw twice.
+    It draws only when asked to: pyvistaqt's own timer is off, so an idle window costs nothing.
 
     Parameters
     ----------
@@ -48,11 +44,10 @@ class GLCanvas:
     """
 
     def __init__(self, parent: QWidget) -> None:
-        from pyvistaqt import QtInteractor
-
+        from sizeviz.app.panes.view import PaneView
         from sizeviz.scene.renderer import Renderer
 
-        self._view = QtInteractor(parent, auto_update=False, multi_samples=1, lighting="none", border=False)
+        self._view = PaneView(parent)
         self._view.setAcceptDrops(False)
         self._view.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._renderer = Renderer(self._view)
@@ -64,19 +59,19 @@ class GLCanvas:
 
     def show_scene(self, spec: SceneSpec) -> None:
         """Take another scene; only what differs is touched."""
-        self._renderer.show(spec)
+        self._view.set_ground(spec.ground)
+        if self._renderer.show(spec):
+            self._view.redraw()
 
     def look(self, camera: Camera2D) -> None:
-        """Look elsewhere."""
+        """Look elsewhere; a scene that is slow to draw follows with its last frame until the camera rests."""
         self._renderer.look(camera)
+        self._view.move_to(camera)
 
     def show_edges(self, visible: bool) -> None:
-        """Draw or hide the element edges."""
-        self._renderer.show_edges(visible)
-
-    def refresh(self) -> None:
-        """Schedule one repaint."""
-        self._view.update()
+        """Draw or hide the element edges; while a frame is moved they wait for the next one."""
+        if self._renderer.show_edges(visible) and not self._view.is_moving:
+            self._view.redraw()
 
     def dispose(self) -> None:
         """Free what VTK holds; the widget must not be drawn any more."""

@@ -101,7 +101,6 @@ class Pane(QFrame):
         self.surface.canvas.show_scene(spec)
         self.surface.set_bounds(spec.bounds)
         self.update_edges()
-        self.surface.refresh()
         self.bar.set_scale(spec.scale)
         self.detail.setText(spec.detail)
         self.detail.setToolTip(spec.detail)

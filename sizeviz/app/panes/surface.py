@@ -267,12 +267,7 @@ class Surface(QWidget):
         self._fitted = False
         self.camera = camera
         self.canvas.look(camera)
-        self.refresh()
         self.glass.update()
-
-    def refresh(self) -> None:
-        """Repaint the canvas once the event loop comes round."""
-        self.canvas.refresh()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Keep canvas and glass as large as the surface; a fitted view stays fitted."""
