@@ -162,7 +162,8 @@ def _same_geometry(old: Layer, new: Layer) -> bool:
         return old.bounds == new.bounds and old.colors.shape == new.colors.shape
     if isinstance(old, LineLayer) and isinstance(new, LineLayer):
         alike = (old.colors is None) == (new.colors is None)
-        return alike and old.points is new.points and np.array_equal(old.segments, new.segments)
+        same_points = old.points is new.points or np.array_equal(old.points, new.points)
+        return alike and same_points and np.array_equal(old.segments, new.segments)
     return False
 
 
