@@ -81,7 +81,7 @@ def coarse(quick: bool):
 
 
 def stalls(folder: Path, quick: bool) -> None:
-    """The longest time the event loop did not come round, in a first and a second run of MRI by both methods."""
+    """Find the longest time the event loop did not come round, in a first and a second run of MRI by both methods."""
     from app.driver import Heartbeat
 
     window, person = open_window(folder, coarse(quick))
@@ -101,7 +101,7 @@ def stalls(folder: Path, quick: bool) -> None:
 
 
 def cancel(folder: Path, quick: bool) -> None:
-    """The longest time from Cancel to idle, over moments spread over a run of MRI."""
+    """Find the longest time from Cancel to idle, over moments spread over a run of MRI."""
     window, person = open_window(folder, coarse(quick))
     controller = window.controller
     controller.automatic = False
@@ -127,7 +127,7 @@ def cancel(folder: Path, quick: bool) -> None:
 
 
 def idle(folder: Path, quick: bool) -> None:
-    """What an idle window costs."""
+    """Measure what an idle window costs."""
     from app.fakes import FakeEngine
     from qtpy.QtCore import QEventLoop, QTimer
 
@@ -144,7 +144,7 @@ def idle(folder: Path, quick: bool) -> None:
 
 
 def brush(folder: Path, quick: bool) -> None:
-    """From a brush event to the repaint, and to the limited and preserved fields, on 513 x 513 nodes."""
+    """Time from a brush event to the repaint, and to the limited and preserved fields, on 513 x 513 nodes."""
     from app.fakes import FakeEngine
     from qtpy.QtCore import QPoint
     from qtpy.QtTest import QTest
@@ -171,7 +171,7 @@ def brush(folder: Path, quick: bool) -> None:
     glass = first.surface.glass
     person.drag(first, [(0.2, 0.2), (0.25, 0.25)], lift=False)
     for k in range(24):
-        person.wait(lambda: not controller.jobs.is_busy, 30)
+        person.wait(lambda: not controller.jobs.is_busy, 300)
         person.rest(60)
         at = person.spot(first, 0.25 + 0.02 * k, 0.25 + 0.015 * k)
         before = None if controller.preview is None else controller.preview.targets.get("size-preserving")
@@ -198,7 +198,7 @@ def brush(folder: Path, quick: bool) -> None:
 
 
 def pan(folder: Path, quick: bool) -> None:
-    """Two panes of 200,000 elements, dragged; and what drawing them anew takes."""
+    """Drag two panes of 200,000 elements, dragged; and what drawing them anew takes."""
     from app.fakes import FakeEngine
 
     window, person = open_window(folder, FakeEngine(n=448))
@@ -233,7 +233,7 @@ def pan(folder: Path, quick: bool) -> None:
 
 
 def memory(folder: Path, quick: bool) -> None:
-    """What 60 updates leave behind."""
+    """Measure what 60 updates leave behind."""
     from app.fakes import FakeEngine, fake_source
 
     window, person = open_window(folder, FakeEngine(n=120))
@@ -251,7 +251,7 @@ def memory(folder: Path, quick: bool) -> None:
 
 
 def first(folder: Path, quick: bool) -> None:
-    """From the command to the first page on the screen, the second time."""
+    """Time from the command to the first page on the screen, the second time."""
     for _ in range(3):
         environment = apart(folder) | {"SIZEVIZ_STARTED": str(time.time())}
         command = [sys.executable, str(ENDINGS), "first"]
@@ -260,7 +260,7 @@ def first(folder: Path, quick: bool) -> None:
 
 
 def endings(folder: Path, quick: bool) -> None:
-    """Exit codes."""
+    """List the exit codes."""
     for way in WAYS:
         command = [sys.executable, str(ENDINGS), way]
         code = subprocess.run(command, env=apart(folder), capture_output=True, check=False).returncode

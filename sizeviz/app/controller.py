@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 from qtpy.QtCore import QObject, QTimer, Signal
 
 from sizeviz.app.brush.live import LiveStroke, Painted, covers_nothing, stroke_words
-from sizeviz.app.engine import LIVE_NODES, Engine, Preview, with_field
+from sizeviz.app.engine import LIMITED, LIVE_NODES, PRESERVED, Engine, Preview, Processed, with_field
 from sizeviz.app.inspect.locate import ElementLocator
 from sizeviz.app.jobs import Failure, Job, JobRunner
 from sizeviz.app.news import Displayed, Notice
@@ -97,6 +97,7 @@ class Controller(QObject):
         self._last_edit = ("", 0.0, 0)
         self._last_seconds: dict[str, float] = {}
         self._preview_due = False
+        self._processed: Processed | None = None
         self._batch = 0
         self.store.changed.connect(self._on_changed)
         self.jobs.started.connect(lambda job: self.busy_changed.emit(self.is_running))
@@ -313,9 +314,10 @@ class Controller(QObject):
         preview, study = self.preview, self.study
         if preview is None or study is None:
             return
-        field, options = preview.field, study.options
+        field, options, since = preview.field, study.options, self._since(study)
 
         def show(targets: dict[str, SizeField]) -> None:
+            self._processed = Processed(field, options, targets)
             if self.stroke is None or self.preview is None:
                 return
             self.preview = Preview(self.preview.field, targets)
@@ -323,7 +325,17 @@ class Controller(QObject):
             if self._preview_due:
                 self._later(self._request_preview)
 
-        self.jobs.submit(Job(PREVIEW, lambda monitor: self.engine.targets(field, options, monitor), show))
+        self.jobs.submit(Job(PREVIEW, lambda monitor: self.engine.targets(field, options, since, monitor), show))
+
+    def _since(self, study: Study) -> Processed | None:
+        """Return the newest fields that the next preview can start from: the last preview's, or the study's own."""
+        known = self._processed
+        if known is not None and known.field.background is study.source.field.background:
+            return known
+        targets = {name: run.target for name, run in study.runs.items() if run.target is not None}
+        if LIMITED in targets and PRESERVED in targets:
+            return Processed(study.source.field, study.options, {name: targets[name] for name in (LIMITED, PRESERVED)})
+        return None
 
     def _run_next(self, method: str) -> None:
         study = self.study

@@ -37,8 +37,21 @@ class Renderer:
         plotter.enable_parallel_projection()
         plotter.remove_all_lights()
 
-    def show(self, spec: SceneSpec) -> bool:
-        """Bring the plotter to a scene; the caller decides when to draw. Return whether there is anything to draw."""
+    def show(self, spec: SceneSpec, edges: bool | None = None) -> bool:
+        """Bring the plotter to a scene; the caller decides when to draw.
+
+        Parameters
+        ----------
+        spec : SceneSpec
+            What to show.
+        edges : bool, optional
+            Whether element edges are drawn; by default as the scene has it.
+
+        Returns
+        -------
+        bool
+            Whether there is anything to draw.
+        """
         if spec is self.spec:
             return False
         differs = self.spec is None or spec.ground != self.spec.ground
@@ -49,7 +62,8 @@ class Renderer:
             self._remove(name)
         for order, layer in enumerate(spec.layers):
             differs |= self._show_layer(layer, order)
-        edges = any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers)
+        if edges is None:
+            edges = any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers)
         differs |= self.show_edges(edges)
         self.spec = spec
         return differs or bool(gone)
@@ -66,7 +80,7 @@ class Renderer:
             self._shown[name][2].SetPosition(0.0, 0.0, order * LIFT * camera.height)
 
     def show_edges(self, visible: bool) -> bool:
-        """Draw or hide the element edges, and what goes with them, without composing anew; return whether it differs."""
+        """Draw or hide the element edges, and what goes with them, composing nothing; return whether it differs."""
         differs = visible != self._edges
         self._edges = visible
         for layer, _, actor in self._shown.values():

@@ -42,12 +42,17 @@ DOUBT = 1e-9
 
 
 @njit(nogil=True, cache=True)
-def envelope_corners(kind, coefficient, grid, sizes, shapes, bounds, corners, first_row, last_row):
-    """Fill rows of ``corners`` (rows, columns, 3) with where the envelope of every eighth node is attained."""
+def envelope_corners(kind, coefficient, grid, sizes, shapes, bounds, wanted, corners, first_row, last_row):
+    """Fill rows of ``corners`` (rows, columns, 3) with where the envelope of every eighth node is attained.
+
+    Corners of tiles none of which is ``wanted`` (rows - 1, columns - 1) are left alone.
+    """
     nx, ny = int(grid[4]), int(grid[5])
     stack, tested, found = np.empty((256, 3), dtype=np.int64), np.empty(256), np.zeros(2, dtype=np.int64)
     for row in range(first_row, last_row):
         for column in range(corners.shape[1]):
+            if not _touches(wanted, row, column):
+                continue
             i, j = min(row * TILE, ny - 1), min(column * TILE, nx - 1)
             own = sizes[i * nx + j]
             best = search_from(kind, coefficient, grid, sizes, shapes, bounds, i, j, own, stack, tested, found)
@@ -55,6 +60,16 @@ def envelope_corners(kind, coefficient, grid, sizes, shapes, bounds, corners, fi
             corners[row, column, SIZE_THERE] = own
             if best < own:
                 _locate(kind, coefficient, grid, sizes, i, j, found[0], found[1], corners[row, column])
+
+
+@simple
+def _touches(wanted, row, column):
+    """Return whether one of the four tiles round a corner is wanted."""
+    for r in range(max(row - 1, 0), min(row + 1, wanted.shape[0])):
+        for c in range(max(column - 1, 0), min(column + 1, wanted.shape[1])):
+            if wanted[r, c]:
+                return True
+    return False
 
 
 @simple
@@ -100,8 +115,8 @@ def _try(kind, coefficient, px, py, size, least, corner):
 
 
 @njit(nogil=True, cache=True)
-def envelope_tiles(kind, coefficient, scale, grid, sizes, shapes, bounds, corners, out, first_row, last_row):
-    """Fill rows of tiles of ``out`` with ``scale`` times the envelope."""
+def envelope_tiles(kind, coefficient, scale, grid, sizes, shapes, bounds, wanted, corners, out, first_row, last_row):
+    """Fill rows of tiles of ``out``, those that are ``wanted``, with ``scale`` times the envelope."""
     nx, ny = int(grid[4]), int(grid[5])
     stack, tested, found = np.empty((256, 3), dtype=np.int64), np.empty(256), np.zeros(2, dtype=np.int64)
     upper = np.empty((TILE, TILE))
@@ -111,6 +126,8 @@ def envelope_tiles(kind, coefficient, scale, grid, sizes, shapes, bounds, corner
     pieces, values, attained = np.empty((SHARE + 1, PIECES)), np.empty(len(names)), np.empty(len(names))
     for row in range(first_row, last_row):
         for column in range(corners.shape[1] - 1):
+            if not wanted[row, column]:
+                continue
             i0, j0 = row * TILE, column * TILE
             rows, columns = min(TILE, ny - i0), min(TILE, nx - j0)
             _bound_above(kind, coefficient, grid, sizes, corners, row, column, rows, columns, upper)

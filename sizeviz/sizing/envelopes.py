@@ -111,26 +111,45 @@ def _envelope(
 def _over_grid(
     field: SizeField, kind: int, coefficient: float, scale: float, threads: int | None, monitor: Monitor, message: str
 ) -> NDArray[np.float64]:
+    grid = field.background.grid
+    assert grid is not None
+    wanted = np.ones((-(-grid.ny // TILE), -(-grid.nx // TILE)), dtype=np.bool_)
+    out = np.empty(len(field.sizes))
+    fill_tiles_of_grid(field, kind, coefficient, scale, wanted, out, threads, monitor, message)
+    return out
+
+
+def fill_tiles_of_grid(
+    field: SizeField,
+    kind: int,
+    coefficient: float,
+    scale: float,
+    wanted: NDArray[np.bool_],
+    out: NDArray[np.float64],
+    threads: int | None,
+    monitor: Monitor,
+    message: str,
+) -> None:
+    """Write the envelope of a field on a grid into ``out`` (V,), in the tiles of 8 x 8 nodes that are wanted."""
     head, sizes = field.sampler[:2]
     grid = field.background.grid
     assert grid is not None
     shapes = pyramid(grid)
     bounds = block_bounds(head, sizes, shapes)
-    rows, columns = -(-grid.ny // TILE), -(-grid.nx // TILE)
-    corners, out = np.empty((rows + 1, columns + 1, 3)), np.empty(len(sizes))
+    rows, columns = wanted.shape
+    corners = np.empty((rows + 1, columns + 1, 3))
 
     def find_corners(start: int, stop: int) -> None:
-        envelope_corners(kind, coefficient, head, sizes, shapes, bounds, corners, start, stop)
+        envelope_corners(kind, coefficient, head, sizes, shapes, bounds, wanted, corners, start, stop)
 
     def fill_tiles(start: int, stop: int) -> None:
-        envelope_tiles(kind, coefficient, scale, head, sizes, shapes, bounds, corners, out, start, stop)
+        envelope_tiles(kind, coefficient, scale, head, sizes, shapes, bounds, wanted, corners, out, start, stop)
 
     chunk = max(1, NODES_A_CHUNK // (8 * (columns + 1)))
     first, second = SubMonitor(monitor, 0.0, 0.1), SubMonitor(monitor, 0.1, 1.0)
     run_chunks(find_corners, rows + 1, chunk=chunk, threads=threads, monitor=first, message=message)
     chunk = max(1, NODES_A_CHUNK // (TILE * grid.nx))
     run_chunks(fill_tiles, rows, chunk=chunk, threads=threads, monitor=second, message=message)
-    return out
 
 
 def _over_triangles(

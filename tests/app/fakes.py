@@ -84,7 +84,7 @@ class FakeEngine:
         run = MethodRun(target, mesh, mesh, fake_report(mesh, asked), {"mesh": done})
         return study.with_run(method, run)
 
-    def targets(self, sizes: SizeField, options: StudyOptions, monitor: Monitor = SILENT) -> dict[str, SizeField]:
+    def targets(self, sizes: SizeField, options: StudyOptions, since=None, monitor: Monitor = SILENT):
         self.calls.append("targets")
         return {
             "gradient-limiting": sizes.with_sizes(sizes.sizes * 0.95),

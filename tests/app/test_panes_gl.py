@@ -124,3 +124,32 @@ def test_canvases_are_made_once(window) -> None:
     assert [pane.surface.canvas for pane in window.board.panes[:2]] == canvases
     assert len(window.board.panes) == 4
     assert all(isinstance(canvas.widget(), QWidget) for canvas in canvases)
+
+
+def test_a_slow_scene_follows_the_hand_and_is_sharp_again_at_rest(window, monkeypatch) -> None:
+    monkeypatch.setattr("sizeviz.app.panes.view.SLOW_SECONDS", 0.0)
+    person, pane = Person(window), window.board.panes[0]
+    view = pane.surface.canvas.widget()
+    before, frames = person.look_at(pane), view.frames
+    pane.surface.move_camera(pane.surface.camera.panned(40, 0, pane.surface.height()))
+    window.grab()
+    assert view.is_moving and view.frames == frames  # the old frame, moved
+    ratio = window.devicePixelRatioF()
+    shift, margin = round(40 * ratio), round(60 * ratio)
+    person.wait(lambda: not view.is_moving)
+    after = person.look_at(pane)
+    assert view.frames > frames
+    same = np.abs(after[:, margin:].astype(int) - before[:, margin - shift : -shift].astype(int)).mean()
+    assert same < 4.0  # drawn anew it is where the moved frame was
+
+
+def test_hovering_and_marks_draw_no_scene_anew(window) -> None:
+    person, pane = Person(window), window.board.panes[0]
+    person.rest(300)
+    frames = [other.surface.canvas.widget().frames for other in window.board.visible_panes]
+    for x in (0.3, 0.4, 0.5):
+        person.hover(pane, x, 0.5)
+    window.controller.store.amend(window.controller.study.with_options(window.controller.study.options))
+    window.board.refresh()
+    person.rest(100)
+    assert [other.surface.canvas.widget().frames for other in window.board.visible_panes] == frames

@@ -51,6 +51,7 @@ class GLCanvas:
         self._view.setAcceptDrops(False)
         self._view.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._renderer = Renderer(self._view)
+        self._edges = False
 
     def widget(self) -> QWidget:
         """Return the pyvistaqt widget."""
@@ -60,7 +61,7 @@ class GLCanvas:
     def show_scene(self, spec: SceneSpec) -> None:
         """Take another scene; only what differs is touched."""
         self._view.set_ground(spec.ground)
-        if self._renderer.show(spec):
+        if self._renderer.show(spec, self._edges):
             self._view.redraw()
 
     def look(self, camera: Camera2D) -> None:
@@ -70,6 +71,7 @@ class GLCanvas:
 
     def show_edges(self, visible: bool) -> None:
         """Draw or hide the element edges; while a frame is moved they wait for the next one."""
+        self._edges = visible
         if self._renderer.show_edges(visible) and not self._view.is_moving:
             self._view.redraw()
 

@@ -105,9 +105,7 @@ class PaneView(QtInteractor):
         gl.glViewport(0, 0, width, height)
         gl.glClear(COLOR_BUFFER)
         smooth = LINEAR if right - left != width else NEAREST
-        window.BlitDisplayFramebuffer(
-            0, 0, 0, width, height, left, low, right - left, high - low, COLOR_BUFFER, smooth
-        )
+        window.BlitDisplayFramebuffer(0, 0, 0, width, height, left, low, right - left, high - low, COLOR_BUFFER, smooth)
         gl.glColorMask(False, False, False, True)  # a compositor must not see through the pane
         gl.glClearColor(0.0, 0.0, 0.0, 1.0)
         gl.glClear(COLOR_BUFFER)
