@@ -75,7 +75,7 @@ class PaneView(QtInteractor):
 
     def set_ground(self, color: tuple[int, int, int]) -> None:
         """Say what is behind the scene; a moved frame leaves some of it bare."""
-        self._ground = tuple(channel / 255.0 for channel in color)
+        self._ground = color[0] / 255.0, color[1] / 255.0, color[2] / 255.0
 
     def paintGL(self) -> None:
         """Draw, or copy the last frame to where it belongs now."""
