@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 
 from sizeviz.improvement._cavity_kernels import core_nodes, exchange, restore_links, save_links
-from sizeviz.improvement._energy_kernels import delta_squared, value
+from sizeviz.improvement._energy_kernels import BARRIER, delta_squared, value
 from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._mesh_kernels import find_next
 from sizeviz.improvement._operation_kernels import (
     COLLAPSE,
     DOUBLET,
     OPEN,
     PILLOW,
     ROTATE,
+    SWAP,
     build_collapse,
     build_doublet,
     build_open,
@@ -20,7 +22,7 @@ from sizeviz.improvement._operation_kernels import (
     build_rotate,
     build_swap,
 )
-from sizeviz.improvement._star_kernels import node_step
+from sizeviz.improvement._step_kernels import STIRRED, node_step, wake
 from sizeviz.sizing._kernels import size_at
 
 CORE_SWEEPS = 2
@@ -33,8 +35,13 @@ EDGE_WEIGHT = 200.0
 """Weight of the edge term around an insertion."""
 AFTER_SWEEPS = 8
 """Most sweeps around an operation that stands."""
-REACHABLE = 10.0
-"""Decrease that may still be missing after the core sweeps; a fifth of it after each sweep more."""
+REACHABLE = (20.0, 1.0, 1.7, 4.0, 8.0)
+"""Decrease that may still be missing after the core sweeps, and after each sweep more, over that of the last sweep.
+
+Measured on 23,000 trials: of the operations that stand in the end, 1 in 100 is given up; of the others, 9 in 10.
+"""
+RELAXED = 0.1
+"""Decrease of a sweep at which the surroundings of an operation have settled."""
 
 
 @compiled
@@ -84,10 +91,10 @@ def measure(region, n, patch, aims, objective):
 def collect_nodes(core, n_core, patch, marks, stamp, nodes):
     """List the core nodes and the nodes of elements around them that the tile owns; -1 where a core node is not.
 
-    ``marks`` is (zone, tile, node marks, element marks).
+    ``marks`` is (zone, tile, node marks, element marks, nodes awake, notes of what failed at each element).
     """
     _, quads, ring, count = patch
-    zone, tile, seen, _ = marks
+    zone, tile, seen = marks[0], marks[1], marks[2]
     n = 0
     for i in range(n_core):
         v = core[i]
@@ -144,32 +151,50 @@ def aim_elements(region, n, patch, aims):
 
 
 @compiled
-def relax(nodes, n, n_core, patch, aims, law, rails, star, hope, patient):
-    """Sweep the cavity, then the cavity and its ring, until the nodes settle or too much of the decrease is missing.
+def sweep_awake(nodes, n, patch, inv, bound, law, rails, star, awake):
+    """Move those of ``n`` listed nodes around which something has moved since they last did; return the decrease."""
+    total = 0.0
+    for i in range(n):
+        v = nodes[i]
+        if awake[v]:
+            awake[v] = False
+            step = node_step(v, patch, inv, bound, law, rails, star)
+            if step > STIRRED:
+                wake(v, patch, awake)
+            total += step
+    return total
 
-    ``hope`` is the decrease that the operation still needs. Returns whether it stayed within reach, which one that
-    is ``patient`` does not ask.
+
+@compiled
+def relax(nodes, n, n_core, region, n_region, patch, awake, aims, law, rails, star, needed, patient):
+    """Sweep the cavity, then the cavity and its ring, until the nodes settle or what is missing is out of reach.
+
+    ``needed`` is what the distortion of the region must fall below. Returns whether it stayed within reach, which one
+    that is ``patient`` does not ask. While elements are inverted their distortion says little, and is not asked.
     """
+    for i in range(n):
+        awake[nodes[i]] = True
+    total, low, _, _, _ = measure(region, n_region, patch, aims, law[0])
     for s in range(CORE_SWEEPS + SWEEPS):
-        step = 0.0
-        for i in range(n_core if s < CORE_SWEEPS else n):
-            step += node_step(nodes[i], patch, aims[2], aims[4], law, rails, star)
-        hope -= step
-        if not patient and s >= CORE_SWEEPS - 1 and hope > max(REACHABLE / 5.0 ** (s - CORE_SWEEPS + 1), 3.0 * step):
+        step = sweep_awake(nodes, n_core if s < CORE_SWEEPS else n, patch, aims[2], aims[4], law, rails, star, awake)
+        total -= step
+        if s >= CORE_SWEEPS and step < RELAXED:
+            break
+        if patient or s < CORE_SWEEPS - 1:
+            continue
+        if low < BARRIER:
+            total, low, _, _, _ = measure(region, n_region, patch, aims, law[0])
+        reach = REACHABLE[min(s - CORE_SWEEPS + 1, len(REACHABLE) - 1)]
+        if low >= BARRIER and total - needed > reach * step:
             return False
-        if s >= CORE_SWEEPS and step < 0.01:
-            return True
     return True
 
 
 @compiled
-def finish(nodes, n, patch, aims, law, rails, star):
+def finish(nodes, n, patch, awake, aims, law, rails, star):
     """Let the surroundings of an operation that stands settle, which makes room for the next one."""
     for _ in range(AFTER_SWEEPS):
-        step = 0.0
-        for i in range(n):
-            step += node_step(nodes[i], patch, aims[2], aims[4], law, rails, star)
-        if step < 0.02:
+        if sweep_awake(nodes, n, patch, aims[2], aims[4], law, rails, star, awake) < 2.0 * RELAXED:
             break
 
 
@@ -188,7 +213,7 @@ def build(kind, code, arg, births, patch, topo, room):
         return build_open(code, arg, births[0], patch, guard, boundary, old, new, spots, work)
     if kind == PILLOW:
         return build_pillow(code, births, patch, old, new, spots)
-    return build_swap(code, arg, patch, guard, old, new)
+    return build_swap(code, arg, patch, guard, old, new, spots)
 
 
 @compiled
@@ -234,7 +259,37 @@ def better(before, after, change, law):
 
 
 @compiled
+def memo(kind, code, arg, patch):
+    """Return an element and the bit of its note that a swap or a collapse has been tried, or bit 0 for the others.
+
+    A swap is noted at the lower one of its two elements, so that it is the same from both.
+    """
+    q, k = code >> 2, code & 3
+    if kind == COLLAPSE:
+        return q, 1 << (8 + (k & 1))
+    if kind != SWAP:
+        return q, 0
+    _, quads, ring, count = patch
+    other = find_next(quads[q, (k + 1) & 3], quads[q, k], quads, ring, count)
+    if other >= 0 and other >> 2 < q:
+        q, k = other >> 2, other & 3
+    return q, 1 << (4 * arg + k)
+
+
+@compiled
 def attempt(kind, code, arg, change, patch, topo, marks, aims, rails, law, room, tops):
+    """Try one operation unless it failed before and nothing around it has changed since; return as ``tried_out``."""
+    q, bit = memo(kind, code, arg, patch)
+    if marks[5][q] & bit and law[4] == 0.0:
+        return 0
+    near = tried_out(kind, code, arg, change, patch, topo, marks, aims, rails, law, room, tops)
+    if near == 0:
+        marks[5][q] |= bit
+    return near
+
+
+@compiled
+def tried_out(kind, code, arg, change, patch, topo, marks, aims, rails, law, room, tops):
     """Try one operation; return the number of nodes around it that were kept moved, or 0 where it was undone.
 
     ``room`` is (old, new, spots, fan room, slots, core, nodes, region, births, star, kept, free nodes, free elements,
@@ -293,15 +348,18 @@ def relaxed_better(before, change, n_core, n, n_old, n_new, patch, marks, aims, 
     n_after = collect_region(nodes, n, patch, marks, tops[2], region)
     if n_after > len(region):
         return False
-    raw = measure(region, n_after, patch, aims, law[0])
-    hope = raw[0] - before[0] + law[1] * change
     pull = law[0], EDGE_WEIGHT if law[4] < 0.0 else 0.0
-    if not relax(nodes, n, n_core, patch, aims, pull, rails, star, hope, law[4] != 0.0):
+    needed = before[0] - law[1] * change
+    if not relax(
+        nodes, n, n_core, region, n_after, patch, marks[4], aims, pull, rails, star, needed, law[4] != 0.0
+    ):  # fmt: skip
         return False
     aim_elements(region, n_after, patch, aims)
     if not better(before, measure(region, n_after, patch, aims, law[0]), change, law):
         return False
-    finish(nodes, n, patch, aims, pull, rails, star)
+    finish(nodes, n, patch, marks[4], aims, pull, rails, star)
+    for i in range(n_after):
+        marks[5][region[i]] = 0
     return True
 
 

@@ -13,3 +13,6 @@ compiled = njit(nogil=True, cache=True, error_model="numpy", _nrt=False, no_cfun
 
 allocating = njit(nogil=True, cache=True, error_model="numpy")
 """Decorator of a kernel that makes arrays of its own."""
+
+inlined = njit(nogil=True, cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True, forceinline=True)
+"""Decorator of a small kernel that is copied into those that call it."""

@@ -22,7 +22,8 @@ from sizeviz.improvement._attempt_kernels import (
 from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates, splits
 from sizeviz.improvement._cavity_kernels import core_nodes, exchange, restore_links, save_links
 from sizeviz.improvement._jit import allocating, compiled
-from sizeviz.improvement._star_kernels import gather, node_step
+from sizeviz.improvement._star_kernels import gather
+from sizeviz.improvement._step_kernels import node_step
 from sizeviz.improvement._worst_kernels import lift_free, lift_sliding, quad_quality, star_quality
 from sizeviz.sizing._minimum_kernels import quad_min
 

@@ -29,6 +29,8 @@ LOSS, NONE, GAIN = np.int64(-1), np.int64(0), np.int64(1)
 """Typed, as are the kinds, because a literal argument would make numba compile one more variant of a kernel."""
 DEGENERATE = 10_000
 """Extra energy of an inner node with two elements, and of a flat boundary node with one: they must go."""
+APART, TOGETHER = 0.5, 0.2
+"""Where nodes of a turned edge begin, over their distance from its middle."""
 
 
 @compiled
@@ -144,9 +146,27 @@ def hexagon(code, patch):
 
 
 @compiled
-def build_swap(code, turn, patch, guard, old, new):
+def spread(v, w, s, t, xy, guard, spots):
+    """Place the ends v, w of the old edge further apart and those of the new one, s and t, nearer; return how many.
+
+    Turned within a rectangle of two squares, the new edge leaves flat corners at v and w, which would take the
+    smoother half a dozen sweeps to open.
+    """
+    n = 0
+    x, y = 0.5 * (xy[v, 0] + xy[w, 0]), 0.5 * (xy[v, 1] + xy[w, 1])
+    for node, share in ((v, APART), (w, APART), (s, -TOGETHER), (t, -TOGETHER)):
+        if not guard[node]:
+            spots[n, 0] = node
+            spots[n, 1] = xy[node, 0] + share * (xy[node, 0] - x)
+            spots[n, 2] = xy[node, 1] + share * (xy[node, 1] - y)
+            n += 1
+    return n
+
+
+@compiled
+def build_swap(code, turn, patch, guard, old, new, spots):
     """Turn the edge between two elements within their hexagon."""
-    _, quads, ring, count = patch
+    xy, quads, ring, count = patch
     other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
     if other < 0 or (guard[v] and guard[w]):
         return 0, 0, 0
@@ -162,7 +182,7 @@ def build_swap(code, turn, patch, guard, old, new):
     else:
         put(new, np.int64(0), y2, w, x1, x2)
         put(new, np.int64(1), x2, v, y1, y2)
-    return 2, 2, 0
+    return 2, 2, spread(v, w, s, t, xy, guard, spots)
 
 
 @compiled

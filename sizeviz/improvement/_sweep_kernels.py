@@ -7,26 +7,35 @@ import math
 import numpy as np
 
 from sizeviz.improvement._jit import allocating, compiled
-from sizeviz.improvement._star_kernels import STAR_COLUMNS, node_step
+from sizeviz.improvement._star_kernels import star_size
+from sizeviz.improvement._step_kernels import STIRRED, node_step, wake
 from sizeviz.sizing._kernels import size_at
 
 
 @allocating
-def sweep_blocks(first, last, blocks, size, patch, inv, bound, law, rails, gain):
-    """Move every node of blocks[first:last] once, in order; ``gain[b]`` receives the objective's decrease."""
-    star = np.empty((patch[2].shape[1], STAR_COLUMNS))
+def sweep_blocks(first, last, blocks, size, patch, inv, bound, law, rails, awake, gain):
+    """Move the nodes of blocks[first:last] that are awake once, in order; ``gain[b]`` gets the objective's decrease.
+
+    A node that has moved falls asleep until it or a neighbour moves by more than a little.
+    """
+    star = np.empty(star_size(patch[2].shape[1]))
     for i in range(first, last):
         b = blocks[i]
         total = 0.0
         for v in range(b * size, min((b + 1) * size, len(patch[3]))):
-            total += node_step(v, patch, inv, bound, law, rails, star)
+            if awake[v]:
+                awake[v] = False
+                step = node_step(v, patch, inv, bound, law, rails, star)
+                if step > STIRRED:
+                    wake(v, patch, awake)
+                total += step
         gain[b] = total
 
 
 @allocating
 def sweep_nodes(nodes, patch, inv, bound, law, rails):
     """Move the nodes of a list once, in order; return the objective's decrease."""
-    star = np.empty((patch[2].shape[1], STAR_COLUMNS))
+    star = np.empty(star_size(patch[2].shape[1]))
     total = 0.0
     for i in range(len(nodes)):
         total += node_step(nodes[i], patch, inv, bound, law, rails, star)

@@ -28,6 +28,8 @@ OBJECTIVES = {
 }
 BLOCK = 512
 """Consecutive nodes of the Hilbert order that one thread moves in one go."""
+AIMED = 3
+"""Sweeps from one look at the targets to the next."""
 LIFTS = 12
 """Passes over the worst elements."""
 LARGEST_STRETCH = 1.4
@@ -143,19 +145,23 @@ class Workspace:
         _sweep_kernels.centre_sizes(first, last, self.xy, self.quads, self.size.sampler, self.hint, self.sizes)
 
     def sweep(self, count: int = 1, monitor: Monitor = SILENT, message: str = "smoothing") -> float:
-        """Move every node ``count`` times; return the objective's decrease in the last sweep."""
+        """Move every node ``count`` times, those that have settled less often; return the last sweep's decrease."""
         law = (self.objective, self.weight)
+        awake = np.ones(len(self.xy), dtype=np.bool_)
         for n in range(count):
-            self.aim()
+            if n % AIMED == 0:
+                self.aim()
             for p, blocks in enumerate(self.phases):
                 part = SubMonitor(monitor, (n + p / len(self.phases)) / count, (n + (p + 1) / len(self.phases)) / count)
-                kernel = partial(self._sweep_part, blocks=blocks, law=law)
+                kernel = partial(self._sweep_part, blocks=blocks, law=law, awake=awake)
                 run_chunks(kernel, len(blocks), chunk=16, threads=self.options.threads, monitor=part, message=message)
         return float(self.gain.sum())
 
-    def _sweep_part(self, first: int, last: int, blocks: NDArray[np.int64], law: tuple[int, float]) -> None:
+    def _sweep_part(
+        self, first: int, last: int, blocks: NDArray[np.int64], law: tuple[int, float], awake: NDArray[np.bool_]
+    ) -> None:
         _sweep_kernels.sweep_blocks(
-            first, last, blocks, BLOCK, self.patch, self.inv, self.bound, law, self.rails, self.gain,
+            first, last, blocks, BLOCK, self.patch, self.inv, self.bound, law, self.rails, awake, self.gain,
         )  # fmt: skip
 
     def sweep_some(self, nodes: NDArray[np.integer]) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from sizeviz.improvement._curve_kernels import curve_frame, curve_shift
 from sizeviz.improvement._jit import allocating, compiled
-from sizeviz.improvement._star_kernels import STAR_COLUMNS, gather
+from sizeviz.improvement._star_kernels import BOUND, INV, N_X, N_Y, O_X, O_Y, P_X, P_Y, gather, lane, star_size
 
 DIRECTIONS = 8
 COARSEST = 0.32
@@ -33,14 +33,16 @@ def star_quality(star, m, x, y, share):
     """
     worst, longest = 1.0, 0.0
     for j in range(m):
-        nx, ny, ox, oy, px, py = star[j, 0], star[j, 1], star[j, 2], star[j, 3], star[j, 4], star[j, 5]
+        i = lane(j)
+        nx, ny, ox, oy = star[i + N_X], star[i + N_Y], star[i + O_X], star[i + O_Y]
+        px, py = star[i + P_X], star[i + P_Y]
         total = corner_ratio(nx - x, ny - y, px - x, py - y)
         total += corner_ratio(ox - nx, oy - ny, x - nx, y - ny)
         total += corner_ratio(px - ox, py - oy, nx - ox, ny - oy)
         total += corner_ratio(x - px, y - py, ox - px, oy - py)
         worst = min(worst, 8.0 / total)
         edge = max((nx - x) ** 2 + (ny - y) ** 2, (px - x) ** 2 + (py - y) ** 2)
-        longest = max(longest, edge * max(share * star[j, 6], star[j, 7]))
+        longest = max(longest, edge * max(share * star[i + INV], star[i + BOUND]))
     return worst, longest
 
 
@@ -50,7 +52,7 @@ def lift_free(v, xy, star, m, share):
     x, y = xy[v, 0], xy[v, 1]
     best, longest = star_quality(star, m, x, y, share)
     limit = max(1.0, longest)
-    step = COARSEST / math.sqrt(star[0, 6])
+    step = COARSEST / math.sqrt(star[INV])
     for _ in range(HALVINGS):
         px, py = x, y
         for k in range(DIRECTIONS):
@@ -70,7 +72,7 @@ def lift_sliding(v, xy, star, m, share, curves, c, station):
     """Search both ways along its curve, halving the step, for a better place of a boundary node."""
     best, longest = star_quality(star, m, xy[v, 0], xy[v, 1], share)
     limit = max(1.0, longest)
-    step = COARSEST / math.sqrt(star[0, 6])
+    step = COARSEST / math.sqrt(star[INV])
     for _ in range(HALVINGS):
         moved = False
         for sign in (-1.0, 1.0):
@@ -102,8 +104,8 @@ def lift_worst(floor, limit, passes, patch, inv, bound, rails):
     An edge may grow to ``sqrt(limit)`` times its target and to the limit of its elements, or stay as long
     as it was.
     """
-    xy, quads, ring, _ = patch
-    star = np.empty((ring.shape[1], STAR_COLUMNS))
+    xy, quads = patch[0], patch[1]
+    star = np.empty(star_size(patch[2].shape[1]))
     left = 0
     for turn in range(passes + 1):
         left = 0

@@ -15,7 +15,7 @@ from sizeviz.improvement import _cleanup_kernels, _mesh_kernels
 from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES
 from sizeviz.improvement._cavity_kernels import MOST_CORE, MOST_ELEMENTS
 from sizeviz.improvement._operation_kernels import DEGENERATE
-from sizeviz.improvement._star_kernels import STAR_COLUMNS
+from sizeviz.improvement._star_kernels import star_size
 from sizeviz.improvement._workspace import Workspace, longer
 from sizeviz.improvement.options import SmoothOptions
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
@@ -69,7 +69,7 @@ class _Tile:
             np.zeros(MOST_ELEMENTS, dtype=np.int64), np.zeros((MOST_ELEMENTS + 2, 4), dtype=np.int64),
             np.zeros((4, 3)), fan, np.zeros(MOST_ELEMENTS + 2, dtype=np.int64), np.zeros(MOST_CORE, dtype=np.int64),
             np.zeros(MOST_NODES, dtype=np.int64), np.zeros(MOST_REGION, dtype=np.int64), np.zeros(4, dtype=np.int64),
-            np.zeros((width, STAR_COLUMNS)), kept, free_nodes, free_quads, np.zeros(MOST_REGION, dtype=np.int64),
+            np.zeros(star_size(width)), kept, free_nodes, free_quads, np.zeros(MOST_REGION, dtype=np.int64),
         )  # fmt: skip
 
 
@@ -106,6 +106,7 @@ class Cleaner:
         self.topo = (longer(ideal, more, 4), longer(guard, more, False), longer(boundary, more, False))
         self.zone = np.concatenate([zone, np.repeat(np.arange(n_tiles, dtype=np.int32), spare)])
         self.seen = np.zeros(n + more, dtype=np.int64), np.zeros(len(work.quads), dtype=np.int64)
+        self.awake, self.failed = np.zeros(n + more, dtype=np.bool_), np.zeros(len(work.quads), dtype=np.int16)
         self.queued, self.visits = np.zeros(n + more, dtype=np.bool_), np.zeros(n + more, dtype=np.int32)
         first_quad = len(work.quads) - more
         self.tiles = [
@@ -143,7 +144,7 @@ class Cleaner:
         return int(done.sum())
 
     def _marks(self, tile: _Tile) -> tuple[Any, ...]:
-        return self.zone, tile.number, *self.seen
+        return self.zone, tile.number, *self.seen, self.awake, self.failed
 
     def _visit(self, tile: _Tile, limit: int, tries: int) -> int:
         law = (self.work.objective, WORTH, LOWEST_QUALITY, LARGEST_STRETCH**2, 0.0)

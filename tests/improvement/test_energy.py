@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from sizeviz.improvement import _energy_kernels as energy
+from sizeviz.improvement import _star_kernels as stars
 
 OBJECTIVES = [energy.RECIPROCAL, energy.PAPER, energy.SHAPE]
 
@@ -69,3 +70,37 @@ def test_edge_derivatives_match_finite_differences() -> None:
     assert xx == pytest.approx((east[1] - west[1]) / (2 * step), rel=1e-5)
     assert gy == pytest.approx(0.5 * gx)
     assert energy.edge_value(0.1, 0.1, 1.3, 10.0) == 0.0
+
+
+@pytest.mark.parametrize("valence", range(3, 10))
+@pytest.mark.parametrize("weight", [0.0, 50.0])
+def test_a_star_in_vector_lanes_is_the_sum_over_its_elements(valence: int, weight: float) -> None:
+    # lanes that no element fills must add nothing
+    rng = np.random.default_rng(valence)
+    angle = 2.0 * np.pi * (np.arange(2 * valence) + rng.uniform(-0.2, 0.2, 2 * valence)) / (2 * valence)
+    rim = np.column_stack([np.cos(angle), np.sin(angle)]) * np.tile([1.0, 1.3], valence)[:, None]
+    xy = np.vstack([rim, [[0.05, -0.03]]])
+    v, j = 2 * valence, np.arange(valence)
+    quads = np.column_stack([np.full(valence, v), 2 * j, 2 * j + 1, (2 * j + 2) % v]).astype(np.int32)
+    ring = np.zeros((v + 1, valence + 4), dtype=np.int32)
+    ring[v, :valence] = 4 * j
+    count = np.append(np.zeros(v), valence).astype(np.int32)
+    inv, bound = rng.uniform(0.8, 1.2, valence), rng.uniform(0.5, 1.5, valence)
+    star = np.full(stars.star_size(ring.shape[1]), np.nan)
+    m = stars.gather(v, (xy, quads, ring, count), inv, bound, star)
+    x, y = xy[v]
+    expected = np.zeros(6)
+    low = math.inf
+    for q in range(valence):
+        (ax, ay), (cx, cy), (bx, by) = xy[quads[q, 1:]] - xy[v]
+        terms = energy.corner_terms(ax, ay, bx, by, cx, cy, inv[q], energy.RECIPROCAL, 0.0)
+        expected += terms[:6]
+        low = min(low, terms[6])
+        for ex, ey in ((ax, ay), (bx, by)):
+            if weight:
+                expected += energy.edge_terms(ex, ey, bound[q], weight)
+    found = stars.star_terms(star, m, x, y, (energy.RECIPROCAL, weight), 0.0)
+    assert found[:6] == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert found[6] == pytest.approx(low, rel=1e-13)
+    value = stars.star_value(star, m, x, y, (energy.RECIPROCAL, weight), 0.0)
+    assert value == pytest.approx((expected[0], low), rel=1e-12)

@@ -97,3 +97,40 @@ def test_a_doublet_becomes_one_element() -> None:
     assert result.n_quads == mesh.n_quads
     assert result.n_points == mesh.n_points
     assert result.areas.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("turn", [0, 1])
+def test_a_turned_edge_begins_without_flat_corners(turn: int) -> None:
+    # within two squares it would leave corners of 180 degrees at the ends of the old one
+    work = Workspace(disturbed(10, 0.0, 0), unit(), uniform(0.1), SmoothOptions(threads=1))
+    cleaner, room = Cleaner(work), Cleaner(work).tiles[0].room
+    old, new, spots = room[0], room[1], room[2]
+    code = work.ring[int(np.argmin(np.hypot(*(work.xy - 0.5).T))), 0]
+    n_old, n_new, n_spots = operations.build_swap(
+        np.int64(code), np.int64(turn), cleaner.patch, cleaner.topo[1], old, new, spots
+    )
+    assert (n_old, n_new, n_spots) == (2, 2, 4)
+    points = work.xy.copy()
+    points[spots[:n_spots, 0].astype(int)] = spots[:n_spots, 1:]
+    quads = np.vstack(
+        [new[:n_new], work.quads[(work.quads[:, 0] >= 0) & ~np.isin(np.arange(len(work.quads)), old[:2])]]
+    )
+    ahead, behind = (
+        points[np.roll(quads, -1, axis=1)] - points[quads],
+        points[np.roll(quads, 1, axis=1)] - points[quads],
+    )
+    corner = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
+    assert corner.min() > 0.3 * 0.1**2
+
+
+def test_what_failed_is_tried_again_only_after_a_change_nearby() -> None:
+    work, cleaner = prepared()
+    tile = cleaner.tiles[0]
+    assert tried(cleaner, "swap", NONE) == 0
+    assert np.count_nonzero(cleaner.failed) == 1
+    stamp = tile.tops[2]
+    assert tried(cleaner, "swap", ANY) == 0
+    assert tile.tops[2] == stamp, "it was built and measured again"
+    assert tried(cleaner, "collapse", ANY) > 0
+    assert np.count_nonzero(cleaner.failed[work.quads[:, 0] >= 0]) == 0
+    assert tried(cleaner, "swap", ANY) > 0

@@ -9,6 +9,7 @@ from sizeviz.conformity import shape_quality
 from sizeviz.errors import InputError
 from sizeviz.geometry import Domain, QuadMesh
 from sizeviz.improvement import SmoothOptions, smoothed
+from sizeviz.improvement._workspace import Workspace
 from sizeviz.sizing import BackgroundMesh, Grid, SizeField
 from tests.improvement.squares import disturbed, graded, uniform, unit
 
@@ -125,3 +126,21 @@ def test_a_mesh_of_another_domain_is_refused() -> None:
 def test_options_out_of_range_are_refused(name: str, value: object) -> None:
     with pytest.raises(InputError, match=name):
         SmoothOptions(**{name: value})  # type: ignore[arg-type]
+
+
+def test_only_nodes_that_are_awake_move_and_they_wake_their_neighbours() -> None:
+    work = Workspace(disturbed(16, 0.0, 0), unit(), uniform(1 / 16), SmoothOptions(threads=1))
+    middle = int(np.argmin(np.hypot(*(work.xy - 0.5).T)))
+    home = work.xy[middle].copy()
+    work.xy[middle] += 0.01
+    before, awake = work.xy.copy(), np.zeros(len(work.xy), dtype=np.bool_)
+    awake[middle] = True
+    work.aim()
+    work._sweep_part(0, 1, work.phases[0], (work.objective, 0.0), awake)
+    assert len(work.phases) == len(work.phases[0]) == 1
+    assert np.array_equal(work.xy[:middle], before[:middle])
+    assert (np.hypot(*(work.xy - before).T) > 1e-4).sum() < 10
+    assert work.xy[middle] == pytest.approx(home, abs=3e-3)
+    near = np.unique(work.quads[(work.quads == middle).any(axis=1)])
+    assert awake[near[near <= middle]].all()
+    assert awake.sum() < 60
