@@ -8,13 +8,14 @@ export MKL_NUM_THREADS ?= 1
 BIN := .venv/bin
 WORKERS ?= 2
 
-.PHONY: help demo test lint format bench screenshots setup clean
+.PHONY: help demo test lint format bench docs screenshots setup clean
 
 help:
 	@echo "make demo         the MRI example by both methods: a table, and demo/compare.png"
 	@echo "make test         the whole test suite"
 	@echo "make lint         ruff, mypy, import-linter, typos"
 	@echo "make bench        every benchmark, one after the other"
+	@echo "make docs         the site: tutorials, how-to, algorithms, Python; into docs/_build/html"
 	@echo "make screenshots  the pictures of README and docs, made anew"
 
 demo:
@@ -43,6 +44,11 @@ bench:
 	@.ci/setup full
 	@set -e; for file in benchmarks/[a-z]*.py; do echo "== $$file"; $(BIN)/python $$file; done
 
+docs:
+	@.ci/setup full
+	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	@echo "The site is docs/_build/html/index.html"
+
 screenshots:
 	@.ci/setup full
 	@set -e; for file in screenshots/make_*.py; do $(BIN)/python $$file; done
@@ -51,5 +57,5 @@ setup:
 	@.ci/setup full
 
 clean:
-	rm -rf .venv build dist demo .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf .venv build dist demo docs/_build docs/auto_tutorials .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find sizeviz tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
