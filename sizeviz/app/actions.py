@@ -48,6 +48,8 @@ COMMANDS: tuple[Command, ...] = (
     Command("recover", "Recover the last unsaved study", "File"),
     Command("save-picture", "Save a picture of this view…", "File", "Ctrl+E"),
     Command("save-comparison", "Save the comparison picture…", "File", "Ctrl+Shift+E"),
+    Command("save-page", "Save an interactive page for browsers…", "File", "Ctrl+Alt+E"),
+    Command("save-film", "Save a film of a turning α…", "File"),
     Command("copy-command", "Copy as command", "File", "Ctrl+Alt+C"),
     Command("copy-python", "Copy as Python", "File", "Ctrl+Alt+P"),
     Command("quit", "Quit", "File", "Ctrl+Q"),

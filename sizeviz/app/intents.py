@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QApplication, QFileDialog
 
+from sizeviz.app.exports import save_film, save_page
 from sizeviz.app.feedback import About
 from sizeviz.app.news import Notice
 from sizeviz.app.panes.board import Selection
@@ -72,6 +73,8 @@ def connect_actions(window: MainWindow) -> None:
     on("copy-python", lambda: copy_recipe(window, "Python"))
     on("save-picture", lambda: save_picture(window))
     on("save-comparison", lambda: save_comparison(window))
+    on("save-page", lambda: save_page(window))
+    on("save-film", lambda: save_film(window))
     on("quit", window.close)
     on("undo", controller.undo)
     on("redo", controller.redo)
@@ -216,7 +219,9 @@ def _saved(window: MainWindow, path: str, work: object) -> None:
 
 
 def _ask_picture(window: MainWindow, name: str) -> str:
-    path, _ = QFileDialog.getSaveFileName(window, "Save a picture", name, "Pictures (*.png *.jpg *.tif *.svg *.pdf)")
+    path, _ = QFileDialog.getSaveFileName(
+        window, "Save a picture", name, "Pictures, vector figures (*.png *.jpg *.tif *.svg *.pdf)"
+    )
     return str(path)
 
 

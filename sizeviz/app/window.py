@@ -259,7 +259,7 @@ class MainWindow(QMainWindow):
         missing = len(self.controller.missing())
         self.actions_["apply"].setEnabled(missing > 0 and not busy)
         self.actions_["cancel"].setEnabled(busy)
-        for name in ("save", "save-as", "copy-command", "copy-python"):
+        for name in ("save", "save-as", "save-page", "save-film", "copy-command", "copy-python"):
             self.actions_[name].setEnabled(self.controller.study is not None)
         self.judge_panel.show_state(missing, busy)
 

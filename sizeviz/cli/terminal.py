@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from sizeviz.monitor import SILENT, Monitor
+from sizeviz.progress_lines import ENVIRONMENT, LineMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,7 +37,10 @@ def on_terminal() -> bool:
 
 @contextmanager
 def progress() -> Iterator[Monitor]:
-    """Give a monitor: a bar that vanishes when the work ends, or silence."""
+    """Give a monitor: a bar that vanishes when the work ends, lines for a program that asked for them, or silence."""
+    if os.environ.get(ENVIRONMENT):
+        yield LineMonitor()
+        return
     if not on_terminal():
         yield SILENT
         return
