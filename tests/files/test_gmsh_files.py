@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from files.reader_seeds import MSH_TEXT, POS_TEXT
 
+from sizeviz.conformity import judged
 from sizeviz.errors import InputError
 from sizeviz.files import read_domain, read_field, read_mesh, write_field
-from sizeviz.sizing import BackgroundMesh, SizeField
+from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, preserved
 
 MESH_WITH = """
 import json, sys
@@ -65,6 +66,23 @@ def test_gmsh_meshes_to_our_field_and_we_read_its_mesh(tmp_path: Path, suffix: s
     assert read_domain(tmp_path / "4.1-1.msh").area == pytest.approx(1.0, rel=1e-12)
     with pytest.raises(InputError, match=r"binary version 2\.2; 4\.1 and ASCII 2\.2 are supported"):
         read_mesh(tmp_path / "2.2-1.msh")
+
+
+@pytest.mark.gmsh
+def test_gmshs_meshes_are_judged_and_ours_is_the_field_to_give_it(tmp_path: Path) -> None:
+    """The paper's "non-intrusive": with h* from a file, somebody else's mesher keeps far more of what h asked for."""
+    x, y = np.meshgrid(np.linspace(0, 1, 65), np.linspace(0, 1, 65))
+    sizes = np.clip(np.abs(x - 0.4 - 0.2 * y), 0.02, 0.2).ravel()
+    asked = SizeField(BackgroundMesh.unit_square_grid(65, 65), sizes)
+    shares = []
+    for name, field in (("h", asked), ("h-star", preserved(asked, PreserveOptions(alpha=2.0)))):
+        path = write_field(tmp_path / f"{name}.pos", field)
+        (tmp_path / name).mkdir()
+        subprocess.run([sys.executable, "-c", MESH_WITH, str(path), str(tmp_path / name)], check=True, timeout=120)
+        report = judged(read_mesh(tmp_path / name / "4.1-1.msh").mesh, asked)
+        assert report.n_inverted == 0 and report.quality_summary["mean"] > 0.5
+        shares.append(report.correct_percent["sqrt-area"])
+    assert shares[1] > shares[0] + 20.0
 
 
 @pytest.mark.gmsh

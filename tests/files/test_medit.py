@@ -13,6 +13,7 @@ from files.test_gmsh_files import growing_field
 
 from sizeviz.errors import InputError
 from sizeviz.files import read_domain, read_field, read_mesh, write_field, write_mesh
+from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, preserved
 
 
 def mmg2d() -> Path:
@@ -34,6 +35,31 @@ def test_mmg_meshes_to_our_sizes_and_we_read_its_mesh(tmp_path: Path) -> None:
     assert np.median(edges / sizes) == pytest.approx(1.0, abs=0.1)
     assert np.corrcoef(np.log(edges), np.log(sizes))[0, 1] > 0.9
     assert read_domain(tmp_path / "o.mesh").area == pytest.approx(1.0, rel=1e-12)
+
+
+def test_mmgs_meshes_are_judged_and_ours_is_the_field_to_give_it(tmp_path: Path) -> None:
+    """MMG makes triangles: R is formed with their mean edge and the least size over each."""
+    background = BackgroundMesh.unit_square_grid(65, 65)
+    x, y = background.points.T
+    asked = SizeField(background, np.clip(np.abs(x - 0.4 - 0.2 * y), 0.02, 0.2))
+    shares = []
+    for name, field in (("h", asked), ("star", preserved(asked, PreserveOptions(alpha=2.0)))):
+        write_field(tmp_path / f"{name}.sol", field)
+        files = [
+            "-in",
+            tmp_path / f"{name}.mesh",
+            "-sol",
+            tmp_path / f"{name}.sol",
+            "-out",
+            tmp_path / f"{name}-o.mesh",
+        ]
+        subprocess.run([mmg2d(), *files, "-hgrad", "-1"], check=True, timeout=120, stdout=subprocess.DEVNULL)
+        made = read_field(tmp_path / f"{name}-o.mesh").background
+        corner = made.points[made.triangles]
+        edges = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).mean(axis=1)
+        ratios = edges / asked.min_over(made.points, made.triangles[:, [0, 1, 2, 2]])
+        shares.append(float(np.mean(ratios <= 1.1)))
+    assert shares[1] > shares[0] + 0.1
 
 
 @pytest.mark.parametrize("suffix", [".sol", ".mesh"])
