@@ -8,11 +8,12 @@ export MKL_NUM_THREADS ?= 1
 BIN := .venv/bin
 WORKERS ?= 2
 
-.PHONY: help demo test lint format bench docs screenshots setup clean
+.PHONY: help demo test test-qt6 lint format bench docs screenshots setup clean
 
 help:
 	@echo "make demo         the MRI example by both methods: a table, and demo/compare.png"
 	@echo "make test         the whole test suite"
+	@echo "make test-qt6     the window's tests with PyQt6 in place of PyQt5, in .venv-qt6"
 	@echo "make lint         ruff, mypy, import-linter, typos"
 	@echo "make bench        every benchmark, one after the other"
 	@echo "make docs         the site: tutorials, how-to, algorithms, Python; into docs/_build/html"
@@ -26,6 +27,10 @@ demo:
 test:
 	@.ci/setup full
 	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+
+test-qt6:
+	@.ci/setup qt6
+	@QT_API=pyqt6 .venv-qt6/bin/python -m pytest tests/app -o qt_api=pyqt6
 
 lint:
 	@.ci/setup full
@@ -51,11 +56,11 @@ docs:
 
 screenshots:
 	@.ci/setup full
-	@set -e; for file in screenshots/make_*.py; do $(BIN)/python $$file; done
+	@set -e; for file in screenshots/make*.py; do $(BIN)/python $$file; done
 
 setup:
 	@.ci/setup full
 
 clean:
-	rm -rf .venv build dist demo docs/_build docs/auto_tutorials .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf .venv .venv-qt6 build dist demo docs/_build docs/auto_tutorials .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find sizeviz tests benchmarks -name __pycache__ -prune -exec rm -rf {} +

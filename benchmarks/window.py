@@ -165,7 +165,7 @@ def brush(folder: Path, quick: bool) -> None:
     person.rest(500)
     repaints, cpus, previews = [], [], []
     shown = []
-    first.surface.canvas.widget().frameSwapped.connect(lambda: shown.append(time.perf_counter()))
+    first.surface.canvas.view.frameSwapped.connect(lambda: shown.append(time.perf_counter()))
     preview = []
     controller.preview_changed.connect(lambda: preview.append(controller.preview))
     glass = first.surface.glass
@@ -184,9 +184,9 @@ def brush(folder: Path, quick: bool) -> None:
         cpus.append(time.process_time() - cpu)
         while controller.preview.targets.get("size-preserving") is before:
             process()
-        frames = second.surface.canvas.widget().frames
+        frames = second.surface.canvas.view.frames
         for _ in range(200):
-            if second.surface.canvas.widget().frames > frames:
+            if second.surface.canvas.view.frames > frames:
                 break
             process()
         previews.append(time.perf_counter() - began)
@@ -207,7 +207,7 @@ def pan(folder: Path, quick: bool) -> None:
     person.rest(500)
     panes = window.board.visible_panes
     surface = panes[0].surface
-    views = [pane.surface.canvas.widget() for pane in panes]
+    views = [pane.surface.canvas.view for pane in panes]
     swapped = []
     views[1].frameSwapped.connect(lambda: swapped.append(1))
     began, cpu = time.perf_counter(), time.process_time()

@@ -37,7 +37,7 @@ def main(names: list[str]) -> int:
         command = [runner, "-a", "-s", f"-screen 0 {SCREEN} -dpi 96", sys.executable, str(Path(__file__)), *names]
         return subprocess.run(command, check=False).returncode
     sys.path.insert(0, str(ROOT / "tests"))
-    wanted = names or ["thumbnails", "compare", *SCENES]
+    wanted = names or ["thumbnails", *SCENES]
     if "thumbnails" in wanted:
         make_thumbnails()
     if "compare" in wanted:

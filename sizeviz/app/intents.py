@@ -17,6 +17,8 @@ from sizeviz.app.qt import QShortcut
 from sizeviz.app.theme import DARK, LIGHT
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -206,12 +208,12 @@ def save_comparison(window: MainWindow, path: str | None = None) -> None:
     _saved(window, path, lambda: save(study, path, methods=methods, measure=measure, dark=window.theme.dark))
 
 
-def _saved(window: MainWindow, path: str, work: object) -> None:
+def _saved(window: MainWindow, path: str, work: Callable[[], object]) -> None:
     """Draw in the window's thread, where VTK belongs, and say how it went."""
     from sizeviz.errors import SizevizError
 
     try:
-        work()  # type: ignore[operator]
+        work()
     except SizevizError as error:
         window.controller.noticed.emit(Notice("error", str(error)))
         return

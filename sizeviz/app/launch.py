@@ -22,6 +22,9 @@ LOG = logging.getLogger(__name__)
 GRAB_SIZE = (1600, 1000)
 """Size of the window while it is photographed."""
 
+PRELOAD_MS = 150
+"""How long after the window is shown VTK begins to be loaded."""
+
 SWITCH_SECONDS = 0.002
 """How long the worker may hold the interpreter before the window gets its turn."""
 
@@ -45,7 +48,10 @@ def launch(source: str | None, grab: str | None) -> int:
         raise InputError(f"{grab}: its folder does not exist; create it first")
     sys.setswitchinterval(SWITCH_SECONDS)
     app = application()
+    from qtpy.QtCore import QTimer
+
     from sizeviz.app.engine import PipelineEngine
+    from sizeviz.app.panes.canvas import preload
     from sizeviz.app.signals import EndRequests
     from sizeviz.app.window import MainWindow
 
@@ -55,6 +61,7 @@ def launch(source: str | None, grab: str | None) -> int:
     if grab is not None:
         window.resize(*GRAB_SIZE)
     window.show()
+    QTimer.singleShot(PRELOAD_MS, preload)
     code = [0]
     if source is not None:
         window.controller.open_source(source)

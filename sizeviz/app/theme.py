@@ -138,6 +138,11 @@ QToolButton:hover { background: @tint; }
 QToolButton:focus { border-color: @accent; }
 QToolButton:checked { background: @tint; color: @accent; border-color: @accent; }
 QToolButton:disabled { color: @border; }
+QToolButton#small { padding: 2px 8px; color: @muted; }
+QToolButton#small:hover { color: @text; }
+QToolButton[popupMode="2"] { padding-right: 20px; }
+QToolButton::menu-indicator { image: url(@icons/down.svg); width: 10px; height: 10px;
+  subcontrol-origin: padding; subcontrol-position: center right; right: 6px; }
 QToolButton#search { background: @raised; color: @muted; border: 1px solid @border; padding: 5px 14px;
   text-align: left; }
 
@@ -186,6 +191,7 @@ QDockWidget::title { background: @panel; padding: 8px 10px; }
 QDockWidget > QWidget { background: @panel; }
 QMainWindow::separator { background: @border; width: 1px; height: 1px; }
 
+QWidget#footer { background: @panel; border-top: 1px solid @border; }
 QFrame#pane { background: @raised; border: 1px solid @border; border-radius: 8px; }
 QFrame#pane[active="true"] { border: 1px solid @accent; }
 QFrame#section { background: @panel; border: none; border-bottom: 1px solid @border; }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import Qt, Signal
@@ -42,6 +43,7 @@ from sizeviz.app.panes.canvas import GLCanvas
 from sizeviz.app.panes.remembered import view_values
 from sizeviz.app.settings import Settings
 from sizeviz.app.theme import THEMES, Theme, apply_theme
+from sizeviz.app.turns import Turns
 from sizeviz.app.welcome import Welcome
 
 if TYPE_CHECKING:
@@ -58,6 +60,9 @@ SIDEBAR = 306
 
 INSPECTOR = 372
 """Width of the judgement's panels."""
+
+LARGE = 40_000
+"""Studies with this many elements are shown pane by pane, so that the window never stands still for all of them."""
 
 
 class MainWindow(QMainWindow):
@@ -88,6 +93,7 @@ class MainWindow(QMainWindow):
         self.theme = THEMES.get(self.settings.theme, THEMES["light"])
         apply_theme(QApplication.instance(), self.theme)  # before there is anything to polish
         self.controller = Controller(engine, self)
+        self.turns = Turns(self)
         self.actions_ = Actions(self)
         self.examples = list(engine.examples())
         self._make_canvas = make_canvas
@@ -147,7 +153,13 @@ class MainWindow(QMainWindow):
         scroll.setWidgetResizable(True)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setMinimumWidth(SIDEBAR)
-        self.pipeline_dock = self._dock("Pipeline", scroll, Qt.DockWidgetArea.LeftDockWidgetArea)
+        sidebar = QWidget()
+        whole = QVBoxLayout(sidebar)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.setSpacing(0)
+        whole.addWidget(scroll, 1)
+        whole.addWidget(self.judge_panel.footer)
+        self.pipeline_dock = self._dock("Pipeline", sidebar, Qt.DockWidgetArea.LeftDockWidgetArea)
 
     def _build_inspector(self) -> None:
         self.statistics, self.worst = StatisticsPanel(), WorstPanel()
@@ -163,6 +175,7 @@ class MainWindow(QMainWindow):
         self.log = LogPanel()
         self.tabs = QTabWidget()
         self.tabs.setDocumentMode(True)
+        self.tabs.tabBar().setDrawBase(False)
         for page, words in ((judge, "Judgement"), (self.history, "History"), (self.log, "Log")):
             self.tabs.addTab(page, words)
         self.tabs.setMinimumWidth(INSPECTOR)
@@ -181,14 +194,23 @@ class MainWindow(QMainWindow):
         bar = QToolBar("Tools")
         bar.setObjectName("tools")
         bar.setMovable(False)
-        for name in ("open", "undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-2",
-                     "panes-3", "panes-4"):  # fmt: skip
+        bar.addAction(self.actions_["open"])
+        about_panes = []
+        for name in ("undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-2", "panes-3",
+                     "panes-4"):  # fmt: skip
             if name == "panes-2":
-                bar.addWidget(_quiet("  Panes"))
+                about_panes.append(bar.addWidget(_quiet("  Panes")))
             if name:
                 bar.addAction(self.actions_[name])
-            else:
-                bar.addSeparator()
+            about_panes.append(self.actions_[name] if name else bar.addSeparator())
+
+        def suit_page() -> None:
+            """Offer only what the page at hand can do."""
+            for action in about_panes:
+                action.setVisible(self.pages.currentWidget() is self.board)
+
+        self.pages.currentChanged.connect(suit_page)
+        suit_page()
         short = {"open": "Open…", "paint": "Paint", "link": "Link", "shared-range": "Shared range", "swap": "Swap",
                  "fit": "Fit", "panes-2": "2", "panes-3": "3", "panes-4": "4"}  # fmt: skip
         for name, words in short.items():
@@ -231,8 +253,10 @@ class MainWindow(QMainWindow):
         self.source.show_source(study.source)
         for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):
             panel.show_options(study.options)
-        self.board.refresh()
-        self.show_judgement()
+        panes = [partial(self.board.refresh_pane, pane) for pane in self.board.visible_panes]
+        self.turns.take([*panes, self.show_judgement])
+        if sum(run.mesh.n_quads for run in study.runs.values() if run.mesh is not None) < LARGE:
+            self.turns.finish()
         self.show_state()
 
     def show_title(self) -> None:
@@ -296,6 +320,7 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Stop the worker, remember the layout, free VTK; in this order, so that nothing is used after it is gone."""
+        self.turns.drop()
         self.controller.jobs.shut_down()
         self.lessons.close()
         self.files.close()

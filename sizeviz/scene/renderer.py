@@ -188,8 +188,11 @@ def _dataset(layer: Layer) -> tuple[Any, Any]:
     if isinstance(layer, ImageLayer):
         return _picture_plane(layer), _texture(layer.colors)
     if isinstance(layer, LineLayer):
-        used, segments = np.unique(layer.segments, return_inverse=True)
-        lines = np.column_stack([np.full(len(layer.segments), 2), segments.reshape(-1, 2)])
+        used = np.zeros(len(layer.points), dtype=bool)
+        used[layer.segments] = True
+        renumbered = np.cumsum(used) - 1
+        lines = np.empty((len(layer.segments), 3), dtype=np.int64)
+        lines[:, 0], lines[:, 1:] = 2, renumbered[layer.segments]
         data = pyvista.PolyData(_raised(layer.points[used]), lines=lines.ravel())
         if layer.colors is not None:
             data.cell_data["rgb"] = layer.colors.copy()

@@ -75,10 +75,11 @@ def percent(part: int, whole: int) -> str:
 
 
 def _ratio(value: float) -> str:
-    """Round R away from 1, so that a failing element never reads as passing."""
-    if value > CORRECT:
-        return f"{math.ceil(value * 100.0 - 1e-7) / 100.0:.2f}"
-    return f"{value:.2f}"
+    """Round R to two digits, or to as many as it takes that a failing element never reads as passing."""
+    digits = 2
+    while value > CORRECT and round(value, digits) <= 1.0:
+        digits += 1
+    return f"{value:.{digits}f}"
 
 
 def _short(value: float) -> str:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.errors import InputError
-from sizeviz.geometry.delaunay import delaunay
 from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sizing import AnalyticSize, BackgroundMesh, SizeField
 
@@ -74,6 +73,8 @@ def approximated(
     InputError
         If the formula is not finite and above 0 somewhere, or needs too many nodes.
     """
+    from sizeviz.geometry.delaunay import delaunay  # here, so that listing the examples does not load numba
+
     points = _first_nodes(domain, seeds)
     sizes = _checked(function, points, label)
     triangles = delaunay(points)

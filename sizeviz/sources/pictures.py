@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import ndimage
 
 from sizeviz.errors import InputError
 from sizeviz.geometry import Domain
@@ -60,6 +59,8 @@ def size_from_curvature(
     InputError
         If the sizes or the tolerance are not above 0, or the finest is not below the coarsest.
     """
+    from scipy import ndimage  # here, so that listing the examples does not load it
+
     _check_range(finest, coarsest)
     if not (tolerance > 0 and smoothing > 0 and nodes_a_pixel >= 1):
         raise InputError(f"{image.label}: tolerance {tolerance}, smoothing {smoothing} and nodes must be above 0")
@@ -121,6 +122,8 @@ def _on_nodes(
     image: Image, values: NDArray[np.float64], nodes_a_pixel: int
 ) -> tuple[BackgroundMesh, NDArray[np.float64]]:
     """Return a regular background over an image's extent, and pixel values interpolated at its nodes."""
+    from scipy import ndimage
+
     ny, nx = image.shape
     share = min(nodes_a_pixel, (MOST_NODES_ALONG - 1) / max(nx, ny))
     count_x, count_y = max(2, round(nx * share) + 1), max(2, round(ny * share) + 1)

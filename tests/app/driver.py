@@ -68,6 +68,7 @@ class Person:
     def wait_settled(self, seconds: float = 300.0) -> None:
         controller = self.window.controller
         self.wait(lambda: not controller.jobs.is_busy and controller.study and not controller.missing(), seconds)
+        self.wait(lambda: not self.window.turns.is_busy)
         self.rest(30)
 
     def spot(self, pane: Pane, x: float, y: float) -> QPoint:

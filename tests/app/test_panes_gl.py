@@ -86,7 +86,7 @@ def test_memory_stays_flat_over_many_studies(window) -> None:
         if round_ == 0:
             before = resident()
     assert resident() - before < 40.0
-    assert all(len(pane.surface.canvas._view.actors) <= 6 for pane in window.board.visible_panes)
+    assert all(len(pane.surface.canvas.view.actors) <= 6 for pane in window.board.visible_panes)
 
 
 def test_vtk_is_only_touched_in_the_windows_thread(window, monkeypatch) -> None:
@@ -112,7 +112,7 @@ def test_an_idle_window_draws_nothing(window, monkeypatch) -> None:
     person, drawn = Person(window), []
     person.rest(300)
     for pane in window.board.visible_panes:
-        pane.surface.canvas._view.ren_win.AddObserver("StartEvent", lambda *_: drawn.append(1))
+        pane.surface.canvas.view.ren_win.AddObserver("StartEvent", lambda *_: drawn.append(1))
     person.rest(600)
     assert drawn == [] and not window.controller.jobs._timer.isActive()
 
@@ -129,7 +129,7 @@ def test_canvases_are_made_once(window) -> None:
 def test_a_slow_scene_follows_the_hand_and_is_sharp_again_at_rest(window, monkeypatch) -> None:
     monkeypatch.setattr("sizeviz.app.panes.view.SLOW_SECONDS", 0.0)
     person, pane = Person(window), window.board.panes[0]
-    view = pane.surface.canvas.widget()
+    view = pane.surface.canvas.view
     before, frames = person.look_at(pane), view.frames
     pane.surface.move_camera(pane.surface.camera.panned(40, 0, pane.surface.height()))
     window.grab()
@@ -146,10 +146,10 @@ def test_a_slow_scene_follows_the_hand_and_is_sharp_again_at_rest(window, monkey
 def test_hovering_and_marks_draw_no_scene_anew(window) -> None:
     person, pane = Person(window), window.board.panes[0]
     person.rest(300)
-    frames = [other.surface.canvas.widget().frames for other in window.board.visible_panes]
+    frames = [other.surface.canvas.view.frames for other in window.board.visible_panes]
     for x in (0.3, 0.4, 0.5):
         person.hover(pane, x, 0.5)
     window.controller.store.amend(window.controller.study.with_options(window.controller.study.options))
     window.board.refresh()
     person.rest(100)
-    assert [other.surface.canvas.widget().frames for other in window.board.visible_panes] == frames
+    assert [other.surface.canvas.view.frames for other in window.board.visible_panes] == frames

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from qtpy.QtCore import QSignalBlocker, Qt, Signal
-from qtpy.QtGui import QPainter
+from qtpy.QtCore import QEvent, QSignalBlocker, QSize, Qt, Signal
+from qtpy.QtGui import QFontMetrics, QPainter
 from qtpy.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
@@ -16,6 +16,9 @@ from qtpy.QtWidgets import (
     QLabel,
     QSizePolicy,
     QSlider,
+    QStyle,
+    QStyleOptionComboBox,
+    QStylePainter,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -24,7 +27,7 @@ from qtpy.QtWidgets import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from qtpy.QtGui import QPaintEvent
+    from qtpy.QtGui import QPaintEvent, QResizeEvent
 
 SLIDER_STEPS = 400
 
@@ -162,6 +165,66 @@ class ElidedLabel(QLabel):
         middle = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
         painter.setPen(self.palette().color(self.foregroundRole()))
         painter.drawText(self.contentsRect(), middle, self.shown)
+
+
+class VerdictLabel(QLabel):
+    """Words that are always seen whole: on two lines where one is too short for the longest verdict.
+
+    Whether there are two depends on the width alone, so that panes of one width stay aligned whatever they say.
+    """
+
+    LONGEST = "✗  99.9990 % correct, worst R = 1.0001 at element 1000000"
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__("", parent)
+        self.setObjectName("verdict")
+        self.setWordWrap(True)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Take as many lines as the width asks for."""
+        super().resizeEvent(event)
+        self._suit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the font."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._suit()
+
+    def _suit(self) -> None:
+        font = self.font()
+        font.setBold(True)
+        metrics = QFontMetrics(font)
+        lines = min(-(-metrics.horizontalAdvance(self.LONGEST) // max(self.width(), 1)), 3)
+        self.setFixedHeight(lines * metrics.lineSpacing() + 3)
+
+
+class Menu(QComboBox):
+    """A menu that is wide enough for its longest entry where there is room, and shrinks where there is not."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+        self.setMinimumWidth(84)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+
+    def sizeHint(self) -> QSize:
+        """Return room for the longest entry, the arrow, and the space that the style sheet puts around them."""
+        widest = max((self.fontMetrics().horizontalAdvance(self.itemText(k)) for k in range(self.count())), default=0)
+        return QSize(widest + 42, super().sizeHint().height())
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw the menu, its words ending in an ellipsis where there is no room for all of them."""
+        painter = QStylePainter(self)
+        option = QStyleOptionComboBox()
+        self.initStyleOption(option)
+        field = QStyle.SubControl.SC_ComboBoxEditField
+        room = self.style().subControlRect(QStyle.ComplexControl.CC_ComboBox, option, field, self).width()
+        option.currentText = self.fontMetrics().elidedText(option.currentText, Qt.TextElideMode.ElideRight, room - 2)
+        painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
+        painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
 
 
 def number(value: float, low: float, high: float, decimals: int = 3) -> QDoubleSpinBox:

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from qtpy.QtCore import QSignalBlocker, Signal
-from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QSpinBox, QWidget
+from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QSpinBox, QVBoxLayout, QWidget
 
 from sizeviz.app.panels.controls import Form, LogNumber, choice, choose, hint, number
 from sizeviz.scene.subject import MEASURE_TITLES
@@ -209,16 +209,26 @@ class JudgePanel(Form):
         self.apply.setEnabled(False)
         self.note = hint("Up to date")
         self.add("Size of an element", self.measure, "μ(e) of R(e) = μ(e) / (β min h over e), eq. (3)")
+        self.footer = QWidget()
         self.automatic.setToolTip("Studies whose last run took up to 3 s run again after every change")
         self.apply.setToolTip("Run what is stale (F5)")
-        self.add_wide(self.automatic)
-        row = QHBoxLayout()
-        row.addWidget(self.apply)
-        row.addWidget(self.note, 1)
-        self.grid.addLayout(row, self.grid.rowCount(), 0, 1, 2)
+        self._lay_out_footer()
         self.measure.currentIndexChanged.connect(lambda: self.measure_chosen.emit(self.measure.currentData()))
         self.automatic.toggled.connect(self.automatic_toggled)
         self.apply.clicked.connect(self.apply_requested)
+
+    def _lay_out_footer(self) -> None:
+        """Keep Apply, and what it would do, in sight under the panels, however far they are scrolled."""
+        self.footer.setObjectName("footer")
+        column = QVBoxLayout(self.footer)
+        column.setContentsMargins(14, 9, 14, 10)
+        column.setSpacing(7)
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        row.addWidget(self.apply)
+        row.addWidget(self.note, 1)
+        column.addLayout(row)
+        column.addWidget(self.automatic)
 
     def show_state(self, missing: int, busy: bool) -> None:
         """Say whether what is shown is up to date."""

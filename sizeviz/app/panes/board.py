@@ -145,18 +145,19 @@ class PaneBoard(QWidget):
 
     def refresh(self) -> None:
         """Show what the controller has now."""
-        shown = [(pane, self._controller.displayed(pane.view.method)) for pane in self.visible_panes]
-        for pane, displayed in shown:
-            chosen = None
-            if self.selection is not None and self.selection.method == pane.view.method and not displayed.stale:
-                chosen = self.selection.elements
-            pane.show_subject(
-                displayed.subject,
-                displayed.stale,
-                dark=self.dark,
-                scale=self._shared_scale(pane, shown),
-                selected=chosen,
-            )
+        for pane in self.visible_panes:
+            self.refresh_pane(pane)
+
+    def refresh_pane(self, pane: Pane) -> None:
+        """Show what the controller has now in one pane."""
+        shown = [(other, self._controller.displayed(other.view.method)) for other in self.visible_panes]
+        displayed = dict(shown)[pane]
+        chosen = None
+        if self.selection is not None and self.selection.method == pane.view.method and not displayed.stale:
+            chosen = self.selection.elements
+        pane.show_subject(
+            displayed.subject, displayed.stale, dark=self.dark, scale=self._shared_scale(pane, shown), selected=chosen
+        )
 
     def fit(self) -> None:
         """Show everything in every pane."""

@@ -14,7 +14,7 @@ from sizeviz.scene.colormaps import MAPS, RATIO_MAP
 from sizeviz.scene.compose import DEFAULT_MAPS, LOG_QUANTITIES
 
 if TYPE_CHECKING:
-    from qtpy.QtGui import QMouseEvent, QPaintEvent
+    from qtpy.QtGui import QKeyEvent, QMouseEvent, QPaintEvent
 
     from sizeviz.scene.scale import ColorScale
     from sizeviz.scene.view import ViewState
@@ -98,9 +98,9 @@ class ColorBar(QWidget):
         """Open the editor."""
         self.edit_requested.emit()
 
-    def keyPressEvent(self, event: object) -> None:
+    def keyPressEvent(self, event: QKeyEvent) -> None:
         """Open the editor by keyboard."""
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space):  # type: ignore[attr-defined]
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space):
             self.edit_requested.emit()
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QPoint, Qt, Signal
-from qtpy.QtWidgets import QComboBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from sizeviz.app.panels.controls import ElidedLabel
+from sizeviz.app.panels.controls import ElidedLabel, Menu, VerdictLabel
 from sizeviz.app.panes.colorbar import ColorBar, ColorBarEditor
 from sizeviz.app.panes.surface import Surface
 from sizeviz.scene.compose import compose
@@ -57,15 +57,11 @@ class Pane(QFrame):
         self.subject = Subject()
         self.surface = Surface(make_canvas, self)
         self.bar = ColorBar(self)
-        self.method, self.quantity = QComboBox(), QComboBox()
+        self.method, self.quantity = Menu(), Menu()
         for name in OFFERED:
             self.method.addItem(METHOD_TITLES[name], name)
         for quantity, words in QUANTITIES.items():
             self.quantity.addItem(words, quantity)
-        for box in (self.method, self.quantity):
-            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
-            box.setMinimumWidth(100)  # headers must not make one pane wider than the other
-            box.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self.detail = ElidedLabel()
         self.detail.setProperty("role", "muted")
         self.badge = QLabel("stale")
@@ -73,9 +69,9 @@ class Pane(QFrame):
         self.badge.setToolTip("An older result; the study has changed since. Apply runs it again.")
         self.badge.hide()
         self.fit_button = QToolButton()
+        self.fit_button.setObjectName("small")
         self.fit_button.setText("Fit")
-        self.verdict = ElidedLabel()
-        self.verdict.setObjectName("verdict")
+        self.verdict = VerdictLabel()
         self._edges: Callable[[], bool] = lambda: False
         self._lay_out()
         self._name()
@@ -150,11 +146,12 @@ class Pane(QFrame):
         head.addWidget(self.method)
         head.addWidget(self.quantity)
         head.addStretch(1)
-        head.addWidget(self.badge)
-        head.addWidget(self.fit_button)
         under = QHBoxLayout()
-        under.setContentsMargins(14, 0, 14, 5)
-        under.addWidget(self.detail)
+        under.setContentsMargins(14, 0, 8, 4)
+        under.setSpacing(6)
+        under.addWidget(self.detail, 1)
+        under.addWidget(self.badge)
+        under.addWidget(self.fit_button)
         foot = QVBoxLayout()
         foot.setContentsMargins(0, 4, 0, 6)
         foot.setSpacing(2)
@@ -204,5 +201,7 @@ class Pane(QFrame):
         sign = {True: "✓  ", False: "✗  ", None: ""}[spec.passed]
         self.verdict.setText(sign + spec.verdict)
         self.verdict.setToolTip(spec.verdict)
-        self.verdict.setProperty("role", {True: "good", False: "bad", None: ""}[spec.passed])
-        self.verdict.style().polish(self.verdict)
+        role = {True: "good", False: "bad", None: ""}[spec.passed]
+        if self.verdict.property("role") != role:
+            self.verdict.setProperty("role", role)
+            self.verdict.style().polish(self.verdict)
