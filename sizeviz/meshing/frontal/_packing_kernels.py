@@ -5,6 +5,9 @@ accepted point lies nearer than ``CLOSE`` of their mean size, in the maximum nor
 (2013), "A frontal Delaunay quad mesh generator using the L-infinity norm", DOI 10.1002/nme.4458. On plateaus of the
 field proposals move to one lattice, so that fronts that meet there fit together.
 
+A front may be confined to a part of the domain; proposals near its cuts are parked in a bucket of their own, for the
+last front, which knows the points of all parts.
+
 ``_nrt=False``: a kernel that makes no array need not count references, which costs more than some of its calls.
 """
 
@@ -24,6 +27,8 @@ CLEARANCE = 0.4
 DECAY = 0.9
 PER_OCTAVE = 4
 N_BUCKETS = 1024
+PARKED = N_BUCKETS
+MARGIN, KNOWN = 1.5, 8.0
 PLATEAU = 1.08
 PLATEAU_WIDTH = 3.0
 NEAR_LATTICE = 0.1
@@ -34,7 +39,7 @@ STRAIGHT = 0.05
 
 X, Y, SIZE, TURN, POINT_COLUMNS = 0, 1, 2, 3, 4
 N_POINTS, N_BLOCKS, BUCKET, N_QUEUED, FREE, STATE_SIZE = 0, 1, 2, 3, 4, 5
-SCALE, LOW_X, LOW_Y, ANGLE, RATIO, LOG_FINEST = 0, 1, 2, 3, 4, 5
+SCALE, LOW_X, LOW_Y, ANGLE, RATIO, LOG_FINEST, LEFT, BOTTOM, RIGHT, TOP = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
 NEXT, LAYER, HINT, HOME, CAME, LINK_COLUMNS = 0, 1, 2, 3, 4, 5
 
 
@@ -198,9 +203,41 @@ def begin(rim, sizes, turns, sampler, region, state, setting, table, packing, wa
         accept(rim[i, 0], rim[i, 1], sizes[i], turns[i], RIM, state, setting, table, packing)
     hint, home = 0, 0
     for i in range(len(rim)):
-        _, home = within(region, rim[i, 0], rim[i, 1], 0.0, home)
+        x, y = rim[i, 0], rim[i, 1]
+        if not (setting[LEFT] <= x < setting[RIGHT] and setting[BOTTOM] <= y < setting[TOP]):
+            continue
+        _, home = within(region, x, y, 0.0, home)
         propose(i, hint, home, -1, FIRST, sampler, region, state, setting, packing, waiting)
     state[BUCKET] = 0
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def _near_cut(x, y, gap, setting):
+    """Whether a point lies less than ``gap`` from a cut of its part, or beyond."""
+    across = x - gap < setting[LEFT] or x + gap >= setting[RIGHT]
+    return across or y - gap < setting[BOTTOM] or y + gap >= setting[TOP]
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def take_over(given, given_setting, given_packing, given_waiting, first, state, setting, table, packing, waiting):
+    """Accept a front's points near its cuts, from the ``first`` on, and take up the proposals it has parked."""
+    points, _, layers = given_packing
+    queue, links, heads, _ = given_waiting
+    for p in range(first, given[N_POINTS]):
+        x, y, h, turn = points[p, X], points[p, Y], points[p, SIZE], points[p, TURN]
+        if layers[p] == RIM or _near_cut(x, y, KNOWN * h, given_setting):
+            accept(x, y, h, turn, layers[p], state, setting, table, packing)
+    k = heads[PARKED]
+    while k >= 0:
+        h, layer = queue[k, SIZE], links[k, LAYER]
+        b = bucket_of(h, setting[LOG_FINEST])
+        if layer == POSTPONED:
+            b = min(b + LATER, N_BUCKETS - 1)
+        _enqueue(
+            queue[k, X], queue[k, Y], h, queue[k, TURN], layer, links[k, HINT], links[k, HOME], links[k, CAME],
+            state, b, waiting,
+        )  # fmt: skip
+        k = links[k, NEXT]
 
 
 @njit(nogil=True, cache=True, _nrt=False)
@@ -264,6 +301,9 @@ def advance(most, sampler, region, state, setting, table, packing, waiting, seed
         else:
             x, y, h, turn = rows[-2 - k, 0], rows[-2 - k, 1], rows[-2 - k, 2], 0.0
             layer, hint, home, came = INNER, 0, 0, -1
+        if _near_cut(x, y, MARGIN * h, setting):
+            _enqueue(x, y, h, turn, layer, hint, home, came, state, PARKED, waiting)
+            continue
         fate, x, y = _try(x, y, h, turn, layer, sampler, hint, setting, table, packing, region, plateaus, home)
         if fate == POSTPONE:
             b = min(bucket_of(h, setting[LOG_FINEST]) + LATER, N_BUCKETS - 1)

@@ -148,17 +148,37 @@ def _send(t, twin, cost, inbox, share):
         inbox[g] += share * (cost[e + 2] - min(m0, m1) - inbox[g])
 
 
-@njit(nogil=True, cache=True, _nrt=False)
-def sweep(forwards, twin, cost, inbox):
-    """Let every triangle send its messages, in order or in reverse."""
+@njit(nogil=True, cache=True, _nrt=True)
+def undecided(twin, cost, inbox):
+    """Return the triangles with more than one partner to choose from; those with one send their message for good."""
     n = len(twin) // 3
+    out = np.empty(n, dtype=np.int32)
+    count = 0
+    for t in range(n):
+        open_edges = 0
+        for e in range(3 * t, 3 * t + 3):
+            open_edges += twin[e] >= 0
+        if open_edges > 1:
+            out[count] = t
+            count += 1
+        elif open_edges == 1:
+            for e in range(3 * t, 3 * t + 3):
+                if twin[e] >= 0:
+                    inbox[twin[e]] = cost[e] - FORBIDDEN
+    return out[:count]
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def sweep(forwards, active, twin, cost, inbox):
+    """Let the triangles of a list send their messages, in order or in reverse."""
+    n = len(active)
     share = 1.0 - DAMPING
     if forwards:
-        for t in range(n):
-            _send(t, twin, cost, inbox, share)
+        for k in range(n):
+            _send(active[k], twin, cost, inbox, share)
     else:
-        for t in range(n - 1, -1, -1):
-            _send(t, twin, cost, inbox, share)
+        for k in range(n - 1, -1, -1):
+            _send(active[k], twin, cost, inbox, share)
 
 
 @njit(nogil=True, cache=True, _nrt=False)

@@ -13,6 +13,7 @@ from sizeviz.meshing.frontal import _packing_kernels as kernels
 from sizeviz.meshing.frontal import _seed_kernels as seeding
 from sizeviz.meshing.frontal.boundary import SLACK
 from sizeviz.monitor import SILENT, Monitor
+from sizeviz.threads import run_chunks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,6 +25,12 @@ if TYPE_CHECKING:
 
 CHUNK = 20_000
 """Points accepted, or quadtree leaves made, between two steps of the monitor: 20 to 40 ms."""
+
+SMALLEST = 16_000
+"""Seeds from which the domain is packed in parts, side by side."""
+
+SAMPLED = 16
+"""Every so manieth seed says where the cuts between parts lie."""
 
 STEEPEST = 1.5
 """Slopes above this are treated as this: sizes that jump cannot be followed by a packing."""
@@ -162,15 +169,90 @@ def packed(
         Progress and cancel.
     """
     at_rim = _rim_sizes(rim, size, options.scale)
-    front = _Front(rim, at_rim, region, seeds, size, options)
-    front.begin(rim, at_rim)
-    expected = 1.3 * seeds.asked + len(rim.points)
-    while not front.advanced():
-        monitor.step(min(front.n_points / expected, 1.0), "placing nodes")
-    nodes = front.points[: front.n_points, :2].copy()
-    inner = front.points[len(rim.points) : front.n_points, kernels.SIZE, None]
-    nodes[len(rim.points) :] += inner * np.random.default_rng(options.seed).uniform(-JITTER, JITTER, (len(inner), 2))
-    return nodes
+    flats = plateaus(region, size, options.scale)
+    setting = _setting(rim, at_rim, region, seeds, size, options)
+    boxes = _parts(seeds.rows)
+    x, y = seeds.rows[:, 0], seeds.rows[:, 1]
+    fronts = []
+    for left, bottom, right, top in boxes:
+        rows = seeds.rows[(x >= left) & (x < right) & (y >= bottom) & (y < top)]
+        confined = np.concatenate([setting, [left, bottom, right, top]])
+        front = _Front(
+            confined, region, rows, size, flats, int(1.3 * seeds.asked * len(rows) / len(x)) + len(rim.points)
+        )
+        front.begin(rim, at_rim)
+        fronts.append(front)
+    expected = 1.3 * seeds.asked + len(rim.points) * len(fronts)
+    _advance(fronts, expected, options.threads, monitor)
+    n_rim = len(rim.points)
+    accepted = [front.points[n_rim : front.n_points] for front in fronts]
+    if len(fronts) > 1:
+        accepted.append(_between(fronts, n_rim, size, expected, monitor))
+    inner = np.vstack(accepted)
+    jitter = np.random.default_rng(options.seed).uniform(-JITTER, JITTER, (len(inner), 2))
+    return np.vstack([rim.points, inner[:, :2] + inner[:, kernels.SIZE, None] * jitter])
+
+
+def _between(
+    fronts: list[_Front], n_rim: int, size: SizeField, expected: float, monitor: Monitor
+) -> NDArray[np.float64]:
+    """Return the points that fill what fronts have left free along the cuts between them."""
+    one = fronts[0]
+    whole = one.setting.copy()
+    whole[kernels.LEFT :] = -np.inf, -np.inf, np.inf, np.inf
+    last = _Front(whole, one.region, np.empty((0, 3)), size, one.plateaus, 0)
+    for k, front in enumerate(fronts):
+        last.take_over(front, n_rim if k else 0)
+    known = last.n_points
+    _advance([last], expected, 1, monitor)
+    return last.points[known : last.n_points]
+
+
+def _setting(
+    rim: Outline,
+    at_rim: NDArray[np.float64],
+    region: RegionArrays,
+    seeds: Seeds,
+    size: SizeField,
+    options: MeshOptions,
+) -> NDArray[np.float64]:
+    """Return the numbers that all fronts share, in the order that the kernels name them."""
+    finest = float(min(at_rim.min(), seeds.rows[:, 2].min(initial=np.inf)))
+    reach = 0.5 * kernels.CLOSE * np.sqrt(2.0) * steepest(size)
+    ratio = min((1.0 + reach) / max(1.0 - reach, 0.25), 4.0)
+    corner = region[0][:2] - 1e-3 * float((region[0][2:] - region[0][:2]).max())
+    return np.array([options.scale, *corner, frame_angle(rim), ratio, float(np.log2(finest))])
+
+
+def _parts(rows: NDArray[np.float64]) -> list[tuple[float, float, float, float]]:
+    """Return the boxes (left, bottom, right, top) of the parts that are packed side by side: four, or one if small.
+
+    They do not depend on the number of threads, so that the mesh does not either.
+    """
+    low, high = -np.inf, np.inf
+    if len(rows) < SMALLEST:
+        return [(low, low, high, high)]
+    x, y = rows[::SAMPLED, 0], rows[::SAMPLED, 1]
+    middle = float(np.median(x))
+    left, right = float(np.median(y[x < middle])), float(np.median(y[x >= middle]))
+    return [
+        (low, low, middle, left), (low, left, middle, high), (middle, low, high, right), (middle, right, high, high),
+    ]  # fmt: skip
+
+
+def _advance(fronts: list[_Front], expected: float, threads: int | None, monitor: Monitor) -> None:
+    """Advance fronts that know nothing of each other until none can go on."""
+    waiting = list(fronts)
+    while waiting:
+        full = np.zeros(len(waiting), dtype=bool)
+
+        def step(first: int, stop: int, waiting: list[_Front] = waiting, full: NDArray[np.bool_] = full) -> None:
+            for k in range(first, stop):
+                full[k] = waiting[k].advanced()
+
+        run_chunks(step, len(waiting), chunk=1, threads=threads)
+        monitor.step(min(sum(front.n_points for front in fronts) / expected, 1.0), "placing nodes")
+        waiting = [front for front, done in zip(waiting, full, strict=True) if not done]
 
 
 class _Front:
@@ -178,32 +260,24 @@ class _Front:
 
     def __init__(
         self,
-        rim: Outline,
-        at_rim: NDArray[np.float64],
+        setting: NDArray[np.float64],
         region: RegionArrays,
-        seeds: Seeds,
+        rows: NDArray[np.float64],
         size: SizeField,
-        options: MeshOptions,
+        flats: NDArray[np.float64],
+        expected: int,
     ) -> None:
-        finest = float(min(at_rim.min(), seeds.rows[:, 2].min(initial=np.inf)))
-        log_finest = float(np.log2(finest))
-        slope = steepest(size)
-        reach = 0.5 * kernels.CLOSE * np.sqrt(2.0) * slope
-        ratio = min((1.0 + reach) / max(1.0 - reach, 0.25), 4.0)
-        corner = region[0][:2] - 1e-3 * float((region[0][2:] - region[0][:2]).max())
-        self.setting = np.array([options.scale, *corner, frame_angle(rim), ratio, log_finest])
-        self.sampler, self.region = size.sampler, region
-        self.plateaus = plateaus(region, size, options.scale)
-        rows, starts = seeding.by_bucket(seeds.rows, log_finest)
-        self.seeds = (rows, starts, starts[:-1].copy())
-        capacity = int(1.3 * seeds.asked) + len(rim.points) + 2 * CHUNK
+        self.setting, self.region, self.sampler, self.plateaus = setting, region, size.sampler, flats
+        ordered, starts = seeding.by_bucket(rows, setting[kernels.LOG_FINEST])
+        self.seeds = (ordered, starts, starts[:-1].copy())
+        capacity = expected + 2 * CHUNK
         self.state = np.zeros(kernels.STATE_SIZE, dtype=np.int64)
         self.state[kernels.FREE] = -1
         self.points = np.empty((capacity, kernels.POINT_COLUMNS))
         self.chain, self.layers = np.empty(capacity, dtype=np.int32), np.empty(capacity, dtype=np.uint8)
         self.queue, self.links = np.empty((capacity, 4)), np.empty((capacity, kernels.LINK_COLUMNS), dtype=np.int32)
-        self.heads = np.full(kernels.N_BUCKETS, -1, dtype=np.int32)
-        self.tails = np.full(kernels.N_BUCKETS, -1, dtype=np.int32)
+        self.heads = np.full(kernels.N_BUCKETS + 1, -1, dtype=np.int32)
+        self.tails = np.full(kernels.N_BUCKETS + 1, -1, dtype=np.int32)
         self.keys, self.values = hashing.rehashed(np.empty(0, np.uint64), np.empty(0, np.int32), 1 << 12)
         self.cells = np.empty(0, dtype=np.int32)
 
@@ -216,6 +290,12 @@ class _Front:
         """Accept the outline's nodes, then let those on the boundary propose the first layer."""
         self._reserve(len(rim.points))
         kernels.begin(rim.points, at_rim, _turns(rim, self.setting[kernels.ANGLE]), *self._arrays())
+
+    def take_over(self, other: _Front, first: int) -> None:
+        """Accept a front's points near its cuts, from the ``first`` on, and take up the proposals it has parked."""
+        self._reserve(other.n_points)
+        given = other._arrays()
+        kernels.take_over(given[2], given[3], given[5], given[6], first, *self._arrays()[2:])
 
     def advanced(self) -> bool:
         """Accept about ``CHUNK`` more points; return whether the domain is full."""

@@ -20,6 +20,8 @@ SWEEPS = 24
 
 LONGEST = 20_000
 """How many triangles the search for one alternating path through blossoms may touch."""
+LONGEST_AT_FIRST = 1000
+"""The same as long as squares are kept whole: what finds no path then may break one up."""
 
 
 def paired(
@@ -54,18 +56,19 @@ def paired(
     convex = kernels.convex(mesh.points, mesh.triangles, mesh.locked, every)
     twin = kernels.squares_kept(convex, cost)
     inbox = np.where(twin < 0, kernels.FORBIDDEN, 0.0)
+    active = kernels.undecided(twin, cost, inbox)
     for k in range(SWEEPS):
-        kernels.sweep(k % 2 == 0, twin, cost, inbox)
+        kernels.sweep(k % 2 == 0, active, twin, cost, inbox)
         monitor.step(0.8 * (k + 1) / SWEEPS, "joining triangles")
     mate = np.full(n, -1, dtype=np.int32)
     kernels.joined_by_belief(twin, cost, inbox, mate)
     for allowed in (twin, convex) if strict else (twin, convex, every):
         if (mate < 0).any():
-            _augment(allowed, mate, monitor)
+            _augment(allowed, mate, LONGEST_AT_FIRST if allowed is twin else LONGEST, monitor)
     return kernels.quads_of(mesh.triangles, every, mate), np.flatnonzero(mate < 0).astype(np.int32)
 
 
-def _augment(twin: NDArray[np.int32], mate: NDArray[np.int32], monitor: Monitor) -> None:
+def _augment(twin: NDArray[np.int32], mate: NDArray[np.int32], most: int, monitor: Monitor) -> None:
     """Join the free triangles along alternating paths, as far as that is possible."""
     n = len(mate)
     root, parent, queue = (np.empty(n, dtype=np.int32) for _ in range(3))
@@ -77,5 +80,5 @@ def _augment(twin: NDArray[np.int32], mate: NDArray[np.int32], monitor: Monitor)
         work = np.zeros((n, matching.WORK_COLUMNS), dtype=np.int32)
         work[:, : matching.OUTER] = -1
         for k in range(len(free)):
-            matching.augment(k, k + 1, free, LONGEST, twin, mate, work, parent, queue)
+            matching.augment(k, k + 1, free, most, twin, mate, work, parent, queue)
             monitor.step(0.9, "joining triangles")
