@@ -116,20 +116,27 @@ def main() -> None:
     parser.add_argument("--most", type=float, default=20_000, help="elements that a field may ask for")
     parser.add_argument("--modes", nargs="+", choices=MODES, default=list(MODES))
     parser.add_argument("--only", nargs="+", type=int, help="numbers of single runs, done whether or not they were")
+    parser.add_argument("--share", default="1/1", help="such as 2/3: the second of three processes, each with its file")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no run after this time")
     parser.add_argument("--twice", type=int, default=0, help="do every so many runs again with two threads")
     parser.add_argument("--out", type=Path, default=Path("robustness.jsonl"))
+    parser.add_argument("--table", nargs="+", type=Path, help="print the tables of these files, and run nothing")
     given = parser.parse_args()
+    if given.table:
+        print(table([row for path in given.table for row in read(path).values()], given.modes))
+        return
     warm_up()
     end = time.perf_counter() + 60.0 * given.minutes
     done = read(given.out)
-    for number in given.only or range(given.runs):
+    part, parts = map(int, given.share.split("/"))
+    numbers = given.only or range(part - 1, given.runs, parts)
+    for number in numbers:
         modes = [mode for mode in given.modes if given.only or (number, mode) not in done]
         if modes and time.perf_counter() < end:
             twice = bool(given.twice) and number % given.twice == 0
             one_run(number, given.seed, given.most, modes, given.out, twice=twice)
     done = read(given.out)
-    if len(done) >= given.runs * len(given.modes) or given.only:
+    if len(done) >= len(numbers) * len(given.modes) or given.only:
         print(table(list(done.values()), given.modes))
 
 
