@@ -145,6 +145,17 @@ def _lines() -> Domain:
     return Domain(square, lines=lines, fixed_points=points, label="square with lines and points")
 
 
+def _regions() -> Domain:
+    """Return a square of five regions: a disk, a curved layer across, and a wall from the layer to the top."""
+    x = np.linspace(0.0, 1.0, 101)
+    layer = np.column_stack([x, 0.55 + 0.08 * np.sin(2 * np.pi * x)])
+    disk = circle(0.35, 0.25, 0.15)
+    wall = np.array([[0.6, layer[60, 1]], [0.7, 1.0]])
+    notch = np.array([[0.0, 0.75], [0.2, 0.75], [0.2, 1.0]])
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    return Domain(square, lines=(layer, np.vstack([disk, disk[:1]]), wall, notch), label="square of five regions")
+
+
 def _coastline() -> Domain:
     """Return a bay-ridden coast with four islands, drawn from fixed harmonics."""
     rng = np.random.default_rng(5)
@@ -178,6 +189,7 @@ SHAPES: dict[str, Callable[[], Domain]] = {
     "comb": _comb,
     "spiral": _spiral,
     "lines": _lines,
+    "regions": _regions,
     "coastline": _coastline,
 }
 """What ``shape`` knows, by name."""
