@@ -129,6 +129,15 @@ def splits(v, patch, topo, work, limit, found):
 
 
 @compiled
+def is_flat(v, a, b, xy):
+    """Say whether the directions from v to two of its neighbours differ by more than 150 degrees."""
+    ux, uy = xy[a, 0] - xy[v, 0], xy[a, 1] - xy[v, 1]
+    wx, wy = xy[b, 0] - xy[v, 0], xy[b, 1] - xy[v, 1]
+    dot = ux * wx + uy * wy
+    return dot < 0.0 and 4.0 * dot * dot > 3.0 * (ux * ux + uy * uy) * (wx * wx + wy * wy)
+
+
+@compiled
 def candidates(v, patch, topo, work, limit, found):
     """List the operations near node v that change the energy by at most ``limit``, best first; return their number.
 
@@ -157,4 +166,12 @@ def candidates(v, patch, topo, work, limit, found):
         for w in (nodes[0], across[0], nodes[1]):
             change += gain(w, GAIN, count, ideal, boundary)
         n = offer(PILLOW, codes[0], NONE, change, limit, found, n)
+    elif guard[v] and not boundary[v]:
+        # a node on an inner line may have a single element on one side of it, and no move makes that convex
+        for j in range(m):
+            if is_flat(v, nodes[j], nodes[j + 1], patch[0]):
+                change = 4 + gain(v, GAIN, count, ideal, boundary)
+                for w in (nodes[j], across[j], nodes[j + 1]):
+                    change += gain(w, GAIN, count, ideal, boundary)
+                n = offer(PILLOW, codes[j], NONE, change, limit, found, n)
     return n

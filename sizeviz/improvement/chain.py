@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 RESCUED = 0.3
 """Quality below which an element's connectivity is changed whatever the valences become."""
 
+FLAT = 0.15
+"""The same beside inner lines, whose nodes may have a single element on one side: valences do not show that."""
+
 
 def improved(
     mesh: QuadMesh,
@@ -58,6 +61,8 @@ def improve(mesh: QuadMesh, domain: Domain, size: SizeField, options: SmoothOpti
         work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
         clean_fast(work, SubMonitor(monitor, 0.05, 0.2))
         work.sweep(4, SubMonitor(monitor, 0.2, 0.3))
+        if domain.lines:
+            rescue(work, FLAT)  # before flat elements beside inner lines draw their neighbours in
         clean_wide(work, options.rounds, SubMonitor(monitor, 0.3, 0.85))
     work.sweep(options.sweeps, SubMonitor(monitor, 0.85, 1.0))
     work.lift(options.floor)

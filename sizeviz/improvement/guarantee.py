@@ -169,7 +169,8 @@ def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothO
     work.aim()
     sizes = np.sort(work.sizes)
     same = np.diff(sizes) <= SAME * sizes[:-1]
-    if options.objective != "reciprocal" or same.mean() < LATTICE:
+    # beside inner lines clean-up needs its rounds, and sizes that keep their nodes from sliding away
+    if options.objective != "reciprocal" or same.mean() < LATTICE or domain.lines:
         return improve(mesh, domain, tight, options, monitor)
     return improve(mesh, domain, tight, replace(options, objective="shape", rounds=0), monitor)
 

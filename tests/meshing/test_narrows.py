@@ -79,3 +79,13 @@ def test_targets_grow_from_short_boundary_edges() -> None:
     targets = with_room(raw, size)
     assert targets.at([[0.2, 0.2]])[0] < 0.05
     assert targets.at([[0.9, 0.7]])[0] == pytest.approx(0.1)
+
+
+def test_inner_lines_have_no_element_with_a_flat_corner() -> None:
+    domain = shape("regions")
+    background = BackgroundMesh.unit_square_grid(201, 201)
+    away = np.hypot(*(background.points - [0.5, 0.25]).T)
+    size = SizeField(background, np.minimum(0.05, 0.006 + 0.5 * away))
+    mesh = improved(generated(domain, size, MeshOptions(scale=1.0)), domain, size)
+    assert shape_quality(mesh).min() > 0.25
+    assert mesh.areas.sum() == pytest.approx(1.0, rel=1e-12)
