@@ -12,7 +12,6 @@ import numpy as np
 
 from sizeviz.geometry.arrays import read_only
 from sizeviz.monitor import SILENT, Monitor
-from sizeviz.sizing._edge_kernels import settle, shrink_balls
 from sizeviz.threads import default_threads, run_chunks
 
 if TYPE_CHECKING:
@@ -48,6 +47,8 @@ def edge_graph(background: BackgroundMesh) -> tuple[NDArray[np.int64], NDArray[n
 
 def limited_by_edges(field: SizeField, epsilon: float, monitor: Monitor = SILENT) -> NDArray[np.float64]:
     """Return nodal sizes whose slope along every background edge is at most epsilon, ``(V,)``."""
+    from sizeviz.sizing._edge_kernels import settle  # here, so that a graph alone does not load numba
+
     start, ends, lengths = edge_graph(field.background)
     labels = field.sizes.copy()
     keys, nodes = np.empty(len(labels) + len(ends)), np.empty(len(labels) + len(ends), dtype=np.int64)
@@ -86,6 +87,8 @@ def preserved_by_edges(
     monitor : Monitor
         Told of progress; may cancel.
     """
+    from sizeviz.sizing._edge_kernels import shrink_balls
+
     start, ends, lengths = edge_graph(field.background)
     sizes = field.sizes
     out = np.empty(len(sizes))

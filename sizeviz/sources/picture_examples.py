@@ -7,7 +7,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from scipy import ndimage
 
 from sizeviz.errors import InputError, MissingDependencyError
 from sizeviz.files import Image
@@ -59,6 +58,8 @@ def coast() -> Source:
 
 def _size_from_shore(image: Image, finer: int = 4) -> SizeField:
     """Return sizes of 1/600 of the longer side at height 0, growing with 0.8 of the distance, up to 1/12."""
+    from scipy import ndimage  # here, so that listing the examples does not load it
+
     x0, y0, x1, y1 = extent(image).bounds
     (ny, nx), side = image.shape, max(x1 - x0, y1 - y0)
     count_x, count_y = finer * nx + 1, finer * ny + 1

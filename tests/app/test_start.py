@@ -1,0 +1,24 @@
+"""The first page is there before anything heavy is loaded."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+HEAVY = ("numba", "scipy", "pyvista", "vtkmodules", "matplotlib", "shapely")
+
+
+def test_the_window_is_built_without_what_only_a_run_or_a_pane_needs(tmp_path) -> None:
+    script = f"""
+import sys
+from sizeviz.app.launch import application
+app = application()
+from sizeviz.app.engine import PipelineEngine
+from sizeviz.app.settings import Settings
+from sizeviz.app.window import MainWindow
+window = MainWindow(PipelineEngine(), Settings({str(tmp_path / "settings.ini")!r}))
+print([name for name in {HEAVY!r} if name in sys.modules])
+window.close()
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout.strip() == "[]", done.stderr
