@@ -32,6 +32,10 @@ FEW = 0.005
 """Share of wrong elements below which smoothing around them is cheaper than everywhere."""
 REPAIRS = 2
 """Rounds of smoothing before elements are inserted where edges are still too long."""
+MOST_REPAIRS = 8
+"""Most rounds of it; the weight is then beyond what numbers can hold against the rest of the objective."""
+PATIENCE = 3
+"""Rounds without fewer wrong elements before the repair is given up."""
 PURSUITS = 4
 """How often the whole repair is begun again, because the last, exact look found an element wrong."""
 FINEST, LOWEST = 0.75, 0.5
@@ -156,8 +160,9 @@ def guaranteed(
         part = SubMonitor(monitor, 0.7 + 0.3 * n / PURSUITS, 0.7 + 0.3 * (n + 1) / PURSUITS)
         _conformed(work, judge, mender, options.rounds, part)
         _raised(judge, mender, floor, options.polish)
+        left = len(judge.wrong)
         judge.verify()
-        if not len(judge.wrong):
+        if left >= len(judge.wrong):
             break
     report = _report(work, judge)
     return work.result(), report
@@ -172,7 +177,7 @@ def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothO
     # beside inner lines clean-up needs its rounds, and sizes that keep their nodes from sliding away
     if options.objective != "reciprocal" or same.mean() < LATTICE or domain.lines:
         return improve(mesh, domain, tight, options, monitor)
-    return improve(mesh, domain, tight, replace(options, objective="shape", rounds=0), monitor)
+    return improve(mesh, domain, tight, replace(options, rounds=0), monitor)
 
 
 def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
@@ -191,11 +196,13 @@ def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
 
 def _conformed(work: Workspace, judge: Judge, mender: Mender, rounds: int, monitor: Monitor) -> None:
     """Repair by smoothing and, where that leaves edges too long, by operations."""
+    fewest, stale = len(work.quads), 0
     for n in range(rounds):
         part = SubMonitor(monitor, n / rounds, (n + 1) / rounds)
-        _repair(work, judge, min(REPAIRS + n, rounds), part)
+        _repair(work, judge, min(REPAIRS + n, MOST_REPAIRS), part)
         wrong = judge.wrong
-        if not len(wrong):
+        fewest, stale = (len(wrong), 0) if len(wrong) < fewest else (fewest, stale + 1)
+        if not len(wrong) or stale > PATIENCE:
             break
         # what an operation left a little too long would not call for another; it may be needed next to it
         nodes = judge.rings(wrong, min(n, 2))

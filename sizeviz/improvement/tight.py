@@ -1,7 +1,7 @@
-"""The tight field: finer than h* only where h* has no slack against the field that the mesh is judged by.
+"""The tight field: h* with what a mesh needs to hold it everywhere, not only on average.
 
-An element of size h* may reach over a crest of h* into sizes smaller than its own. The smallest size that the user asks
-for within a few elements bounds what the element may be: h' = min(h*, c min of h within r h*).
+Longest edges are longer than the mean, and an element of size h* may reach over a crest of h* into sizes smaller than
+its own: h' = c min(h*, min of h within r h*). The second minimum counts where r is above the alpha of h*.
 
 Where the user's field has plateaus that hold much of the mesh, a crest is not the trouble: the elements of a plateau
 form a lattice, whose edge cannot follow the plateau's, and the irregular elements along it need room. There h' = c h*,
@@ -38,7 +38,7 @@ SPREADS = (1.5, 1.25, 1.1)
 """How far beyond a plateau its size may be kept: up to where h* is this much larger; the first that is cheap enough."""
 FLAT = 0.01
 """Slope below which sizes change by less than this share from one element to the next."""
-ON_FLAT = 0.917
+ON_FLAT = 0.93
 """Largest factor on flat ground that does not rule: where no edge may be longer than the others, none can give way."""
 ON_PLATEAUS = 0.96
 """The factor there."""
@@ -113,7 +113,7 @@ def tightened(
         return target.with_sizes(sizes, f"{target.label}, tight")
     share = _shares(field, target, factor) if options.factor is None else np.full(len(target.sizes), options.factor)
     if field.background.grid is not None and _alike(field, target):
-        sizes = np.minimum(target.sizes, share * _grid_minima(field, radius * target.sizes))
+        sizes = np.minimum(share * target.sizes, share * _grid_minima(field, radius * target.sizes))
         return target.with_sizes(sizes, f"{target.label}, tight")
     # h* itself bounds the minimum within alpha h* from below; a second scale stands for the floors of narrow valleys
     lower = target.with_sizes(share * target.sizes)
@@ -182,7 +182,7 @@ def _grid_minima(field: SizeField, reach: NDArray[np.float64]) -> NDArray[np.flo
 def chosen(target: SizeField) -> tuple[float, float]:
     """Return the radius and factor that suit a field without ruling plateaus, by its mean slope."""
     asked = _asked(target)
-    return (2.0, 0.96) if float((_slopes(target) * asked).sum() / asked.sum()) > STEEP else (1.5, 0.98)
+    return (2.0, 0.96) if float((_slopes(target) * asked).sum() / asked.sum()) > STEEP else (1.5, 0.96)
 
 
 def _slopes(field: SizeField) -> NDArray[np.float64]:

@@ -28,7 +28,7 @@ def test_the_tight_field_lies_below_both_and_above_the_brute_force_minimum() -> 
     away = np.hypot(*(points[rows, None] - points[None]).transpose(2, 0, 1))
     # squares of nodes stand for the circle: they may reach a cell or so beyond it
     wide = np.where(away <= 1.5 * target.sizes[rows, None] + 3 / 64, field.sizes, np.inf).min(axis=1)
-    assert (tight.sizes[rows] >= np.minimum(target.sizes[rows], 0.9 * wide) - 1e-12).all()
+    assert (tight.sizes[rows] >= 0.9 * np.minimum(target.sizes[rows], wide) - 1e-12).all()
     near = np.where(away <= 0.5 * target.sizes[rows, None], field.sizes, np.inf).min(axis=1)
     assert (tight.sizes[rows] <= np.maximum(0.9 * near, tight.sizes.min()) + 1e-12).all()
 

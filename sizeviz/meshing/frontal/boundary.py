@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from sizeviz.sizing import SizeField
 
 SLACK = 0.15
+SLACK_SHARE = 0.03
 """How much of an element a piece may lack before it gets one more edge: sizes are kept rather than exceeded."""
 
 SHARPEST = np.pi / 4
@@ -128,7 +129,7 @@ def least_count(curve: Curve, piece: Piece, ideal: float) -> int:
     if piece.whole:
         return 1
     turning = int(np.ceil(_turning(curve, piece.begin, piece.end) / SHARPEST - 1e-9))
-    return max(int(np.ceil(ideal - SLACK)), turning, 3 if piece.first == piece.last else 1)
+    return max(int(np.ceil(ideal - min(SLACK, SLACK_SHARE * ideal))), turning, 3 if piece.first == piece.last else 1)
 
 
 def _turning(curve: Curve, begin: float, end: float) -> float:
