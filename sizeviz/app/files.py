@@ -72,6 +72,7 @@ class StudyFiles(QObject):
         self._kept: Study | None = None  # what the autosave holds
         self._autosave: Autosave | None = None
         self._complained = False
+        self._stamp: tuple[int, ...] | None = None  # of the file, when it was last read or written here
         self._saving = JobRunner(self)
         self._saving.failed.connect(self._on_failed)
         self._timer = QTimer(self)
@@ -103,9 +104,11 @@ class StudyFiles(QObject):
         """Open a study file; the study that was there can be returned to by undo."""
         from sizeviz.study.storage import read_study
 
+        stamp = stamp_of(Path(path))
+
         def done(content: StudyFile) -> None:
             self._take(content, f"Open {Path(path).name}")
-            self.path, self._base = Path(path), self._controller.study
+            self.path, self._base, self._stamp = Path(path), self._controller.study, stamp
             self._controller.opened.emit(path)
 
         self._read(f"opening {path}", lambda: read_study(path), done)
@@ -157,10 +160,16 @@ class StudyFiles(QObject):
         path = Path(path)
         if path.suffix.lower() != SUFFIX:
             path = path.with_name(path.name + SUFFIX)
+        if path == self.path and self._changed_elsewhere(path):
+            words = (
+                f"{path.name} was changed by another program since it was opened here: save again to replace it, or "
+            )
+            self._controller.noticed.emit(Notice("warning", f"{words}save under another name to keep both"))
+            return
         content = self.content()
 
         def done(_: object) -> None:
-            self.path, self._base = path, content.study
+            self.path, self._base, self._stamp = path, content.study, stamp_of(path)
             if not self.is_modified and self._autosave is not None:
                 self._autosave.discard()
                 self._kept = None
@@ -208,6 +217,11 @@ class StudyFiles(QObject):
 
         self._controller.jobs.submit(Job(title, work, then))
 
+    def _changed_elsewhere(self, path: Path) -> bool:
+        """Return whether another program wrote the file; the second time it is known, and may be replaced."""
+        before, self._stamp = self._stamp, stamp_of(path)
+        return before is not None and self._stamp is not None and before != self._stamp
+
     def _take(self, content: StudyFile, words: str) -> None:
         self._controller.set_study(content.study, content.strokes, content.original, words)
         self.view_restored.emit(dict(content.view))
@@ -252,6 +266,15 @@ class StudyFiles(QObject):
         if not quiet:  # a disk stays full for a while: once is enough
             words = f"Autosave: {failure.message}" if job.title == AUTOSAVING else failure.message
             self._controller.noticed.emit(Notice("error", words, f"{job.title}\n\n{failure.details}"))
+
+
+def stamp_of(path: Path) -> tuple[int, ...] | None:
+    """Return what changes when a file is written, None where there is no file."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
 
 
 def age_words(modified: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -18,6 +19,38 @@ EXTRAS: dict[str, tuple[tuple[str, ...], str]] = {
     "video": (("imageio_ffmpeg",), "films"),
 }
 """The optional extras: the modules they bring, and what these are for."""
+
+DISPLAY_PACKAGES = "xvfb xauth"
+"""Debian packages that make a screen where there is none."""
+
+LIBRARIES: dict[str, str] = {
+    "libEGL.so.1": "libegl1",
+    "libGL.so.1": "libgl1",
+    "libX11.so.6": "libx11-6",
+    "libX11-xcb.so.1": "libx11-xcb1",
+    "libdbus-1.so.3": "libdbus-1-3",
+    "libfontconfig.so.1": "libfontconfig1",
+    "libfreetype.so.6": "libfreetype6",
+    "libglib-2.0.so.0": "libglib2.0-0",
+    "libgthread-2.0.so.0": "libglib2.0-0",
+    "libxcb.so.1": "libxcb1",
+    "libxcb-icccm.so.4": "libxcb-icccm4",
+    "libxcb-image.so.0": "libxcb-image0",
+    "libxcb-keysyms.so.1": "libxcb-keysyms1",
+    "libxcb-randr.so.0": "libxcb-randr0",
+    "libxcb-render.so.0": "libxcb-render0",
+    "libxcb-render-util.so.0": "libxcb-render-util0",
+    "libxcb-shape.so.0": "libxcb-shape0",
+    "libxcb-shm.so.0": "libxcb-shm0",
+    "libxcb-sync.so.1": "libxcb-sync1",
+    "libxcb-util.so.1": "libxcb-util1",
+    "libxcb-xfixes.so.0": "libxcb-xfixes0",
+    "libxcb-xinerama.so.0": "libxcb-xinerama0",
+    "libxcb-xkb.so.1": "libxcb-xkb1",
+    "libxkbcommon.so.0": "libxkbcommon0",
+    "libxkbcommon-x11.so.0": "libxkbcommon-x11-0",
+}
+"""Libraries that Qt's part for X11 links to, and the Debian packages that hold them."""
 
 GMSH_SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
 """Debian packages that gmsh's wheel links to."""
@@ -47,7 +80,7 @@ def doctor() -> int:
     """Say which versions are here, whether pictures can be drawn, and what is missing."""
     from sizeviz.cli.tables import console
 
-    findings = [*_versions(), _cores(), _kernels(), _opengl(), _display(), _fonts(), *_extras()]
+    findings = [*_versions(), _cores(), _kernels(), _opengl(), _qt(), _display(), _fonts(), *_extras()]
     out = console()
     for finding in findings:
         mark = "[green]ok[/]" if not finding.remedy else "[red]missing[/]" if finding.needed else "[yellow]note[/]"
@@ -92,10 +125,46 @@ def _opengl() -> Finding:
     return Finding("OpenGL off-screen", "does not work: no pictures", f"sudo apt-get install {PACKAGES}", needed=True)
 
 
+def _qt() -> Finding:
+    """Look for what Qt's part for X11 links to, without loading it: what is missing would end the process."""
+    plugin = _x11_plugin()
+    if plugin is None:
+        return Finding("window", "PyQt5 is not installed; the command line does without", "pip install PyQt5")
+    missing = missing_libraries(plugin)
+    if not missing:
+        return Finding("window", "Qt finds its libraries")
+    known = sorted({LIBRARIES[name] for name in missing if name in LIBRARIES})
+    state = f"cannot open: {', '.join(missing)} missing"
+    remedy = f"sudo apt-get install {' '.join(known)}" if known else "install the packages that hold these libraries"
+    return Finding("window", state, remedy)
+
+
+def missing_libraries(file: Path) -> list[str]:
+    """Return the libraries that a shared object links to and the system does not find; none where ``ldd`` is not."""
+    if shutil.which("ldd") is None:
+        return []
+    said = subprocess.run(["ldd", str(file)], capture_output=True, text=True, check=False, timeout=30).stdout
+    return sorted({line.split()[0] for line in said.splitlines() if line.rstrip().endswith("not found")})
+
+
+def _x11_plugin() -> Path | None:
+    spec = find_spec("PyQt5")
+    root = next(iter(spec.submodule_search_locations or ()), None) if spec else None
+    if root is None:
+        return None
+    plugins = Path(root).glob("Qt*/plugins/platforms/libqxcb.so")
+    return next(plugins, Path(root) / "QtWidgets.abi3.so")
+
+
 def _display() -> Finding:
     from sizeviz.scene.opengl import has_display
 
-    return Finding("display", "there" if has_display() else "none; pictures are drawn off-screen")
+    if has_display():
+        return Finding("display", "there")
+    state = "none; pictures are drawn off-screen"
+    if shutil.which("xvfb-run"):
+        return Finding("display", f"{state}; xvfb-run sizeviz gui opens the window unseen")
+    return Finding("display", f"{state}, the window needs one", f"sudo apt-get install {DISPLAY_PACKAGES}")
 
 
 def _fonts() -> Finding:

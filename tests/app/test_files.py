@@ -97,6 +97,26 @@ def test_save_asks_for_a_place_once(qtbot, opened, tmp_path, monkeypatch) -> Non
     assert len(asked) == 2
 
 
+def test_a_study_that_another_program_changed_is_not_replaced_unasked(qtbot, opened, tmp_path) -> None:
+    path = tmp_path / "shared.sizeviz"
+    save(qtbot, opened, path)
+    other = StudyFile(Study(opened.controller.study.source), view={"from": "elsewhere"})
+    write_study(path, other)
+    paint(opened.controller)
+    said = notices(opened)
+    opened.files.save(path)
+    assert said[0].level == "warning" and "changed by another program" in said[0].text
+    assert read_study(path).view == {"from": "elsewhere"} and opened.files.is_modified
+    opened.files.save(path)  # again, knowing it
+    qtbot.waitUntil(lambda: not opened.files.is_modified, timeout=10_000)
+    assert len(read_study(path).strokes) == 1
+    paint(opened.controller)
+    path.unlink()  # gone is not changed: nothing can be lost
+    opened.files.save(path)
+    qtbot.waitUntil(lambda: not opened.files.is_modified, timeout=10_000)
+    assert path.exists()
+
+
 @pytest.mark.parametrize("place", ["no/such/folder.sizeviz", "/proc/folder.sizeviz"])
 def test_a_save_that_fails_is_a_notice_and_the_window_lives_on(qtbot, opened, tmp_path, place: str) -> None:
     paint(opened.controller)

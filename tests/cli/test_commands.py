@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from files.reader_seeds import quad_mesh
 from PIL import Image
 
 from sizeviz.cli import run_command_line
-from sizeviz.files import read_field, read_mesh
+from sizeviz.files import read_field, read_mesh, write_mesh
 from sizeviz.sizing import BackgroundMesh, SizeField
 from sizeviz.sources import load
 
@@ -190,6 +194,47 @@ def test_doctor_names_the_packages_without_opengl(
     monkeypatch.setattr(opengl, "probe", lambda: "no OpenGL")
     assert run_command_line(["doctor"]) == 1
     assert "apt-get install libegl1 libgl1-mesa-dri" in capsys.readouterr().out
+
+
+def test_doctor_names_what_the_window_lacks(
+    capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    from sizeviz.cli import doctor
+    from sizeviz.scene import opengl
+
+    ldd = tmp_path / "ldd"
+    ldd.write_text("#!/bin/sh\necho '\tlibxcb-icccm.so.4 => not found'\necho '\tlibc.so.6 => /lib/libc.so.6 (0x7f)'\n")
+    ldd.chmod(0o755)
+    monkeypatch.setattr(opengl, "probe", lambda: None)
+    monkeypatch.setattr(doctor.shutil, "which", lambda name: str(ldd) if name == "ldd" else None)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    assert run_command_line(["doctor"]) == 0, "the command line can do its work"
+    printed = capsys.readouterr().out
+    assert "libxcb-icccm.so.4 missing" in printed and "apt-get install libxcb-icccm4" in printed
+    assert "the window needs one" in printed and "apt-get install xvfb xauth" in printed
+
+
+def in_a_process_without_opengl(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run a command where no EGL driver can be found and there is no display: VTK itself would end the process."""
+    environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    environment |= {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json", "PYTHONPATH": str(Path(__file__).parents[2])}
+    command = [sys.executable, "-m", "sizeviz", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, env=environment, timeout=500)
+
+
+def test_a_machine_without_opengl(tmp_path: Path) -> None:
+    said = in_a_process_without_opengl("doctor")
+    assert said.returncode == 1 and "apt-get install libegl1 libgl1-mesa-dri" in said.stdout
+    mesh = write_mesh(tmp_path / "m.vtu", quad_mesh())
+    drawn = in_a_process_without_opengl("shot", str(mesh), "-o", str(tmp_path / "m.png"), "--color-by", "quality")
+    assert drawn.returncode == 1 and drawn.stderr.count("\n") == 1 and "apt-get install libegl1" in drawn.stderr
+    vector = in_a_process_without_opengl("shot", str(mesh), "-o", str(tmp_path / "m.svg"), "--color-by", "quality")
+    assert vector.returncode == 0, "vectors and pages need no OpenGL"
+    window = in_a_process_without_opengl("gui")
+    assert window.returncode == 1 and "needs a display" in window.stderr and window.stderr.count("\n") == 1
+    assert {path.name for path in tmp_path.iterdir()} == {"m.vtu", "m.svg"}
 
 
 def test_without_opengl_the_numbers_are_still_written(

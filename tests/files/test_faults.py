@@ -65,6 +65,60 @@ def test_the_error_of_a_write_that_fails_inside_the_block(tmp_path: Path) -> Non
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("step", ["touch", "replace", "fsync", "chmod"])
+def test_permission_lost_on_the_way_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    path = write_field(tmp_path / "f.npz", grid_field())
+    before = path.read_bytes()
+
+    def refused(*args: object, **kwargs: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(*((os, step) if step in ("replace", "fsync") else (Path, step)), refused)
+    with pytest.raises(InputError, match="permission denied; choose a folder of your own"):
+        write_field(path, grid_field().with_sizes(2 * grid_field().sizes))
+    monkeypatch.undo()
+    assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+
+
+def test_permission_lost_before_reading(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_field(tmp_path / "f.npz", grid_field())
+
+    def refused(*args: object, **kwargs: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(os, "open", refused)
+    with pytest.raises(InputError, match=r"cannot read .*f\.npz: no permission to read it"):
+        read_field(path)
+
+
+@pytest.mark.parametrize("suffix", sorted(set(FIELD_WRITERS) - {".sol", ".mesh"}))
+def test_a_file_that_is_cut_or_grows_while_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
+) -> None:
+    """Its size is asked first; what is read afterwards can be another. The answer is a field or one line of error."""
+    path = write_field(tmp_path / f"f{suffix}", grid_field())
+    whole = path.read_bytes()
+    ask = os.fstat
+    for after in (whole[: len(whole) // 2], whole + whole[: len(whole) // 3]):
+        path.write_bytes(whole)
+
+        def changed(handle: int, after: bytes = after) -> os.stat_result:
+            status = ask(handle)
+            path.write_bytes(after)
+            return status
+
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "fstat", changed)
+            try:
+                field = read_field(path)
+            except InputError as error:
+                assert str(path) in str(error) and "\n" not in str(error)
+            else:
+                assert np.isfinite(field.sizes).all()
+
+
 def test_permissions_are_kept_and_links_followed(tmp_path: Path) -> None:
     real, link = tmp_path / "real.npy", tmp_path / "link.npy"
     write_field(real, grid_field())
