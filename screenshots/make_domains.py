@@ -37,8 +37,9 @@ def main() -> None:
     for name, words, box in DETAILS:
         study = run(Study(load(name)), ["guaranteed"])
         made = study.runs["guaranteed"]
-        details.append(Subject(words, "", made.mesh, made.report, domain=study.source.domain))
-        boxes.append(box)
+        count = "" if made.mesh is None else f"of {made.mesh.n_quads:,} quadrilaterals"
+        details.append(Subject(words, count, made.mesh, made.report, domain=study.source.domain))
+        boxes.append(box or _liveliest(study))
     _sheet("details.png", details, boxes)
 
 
@@ -88,6 +89,22 @@ def _sheet(name: str, subjects: list[Subject], boxes: list[tuple[float, float, f
     print(name)
 
 
+def _liveliest(study: Study, side: float = 0.08) -> tuple[float, float, float, float]:
+    """Return the square of the domain in which element sizes vary most."""
+    mesh = study.runs["guaranteed"].mesh
+    assert mesh is not None
+    centre, log_area = mesh.points[mesh.quads].mean(axis=1), np.log(mesh.areas)
+    x0, y0, x1, y1 = study.source.domain.bounds
+    cells = [np.minimum(((c - low) / side).astype(int), n - 1) for c, low, n in
+             ((centre[:, 0], x0, int((x1 - x0) / side)), (centre[:, 1], y0, int((y1 - y0) / side)))]  # fmt: skip
+    number = cells[0] * 1000 + cells[1]
+    names, which = np.unique(number, return_inverse=True)
+    mean = np.bincount(which, log_area) / np.bincount(which)
+    best = names[np.argmax(np.bincount(which, (log_area - mean[which]) ** 2) / np.bincount(which))]
+    column, row = divmod(int(best), 1000)
+    return x0 + column * side, y0 + row * side, x0 + (column + 1) * side, y0 + (row + 1) * side
+
+
 def _near(points: NDArray[np.float64], x: float, y: float) -> NDArray[np.float64]:
     return np.hypot(points[:, 0] - x, points[:, 1] - y)
 
@@ -101,10 +118,10 @@ CASES = (
 """Shape, title and sizes."""
 
 DETAILS = (
-    ("ring", "The ring's crest", (0.68, 0.42, 0.84, 0.58)),
-    ("mri", "A detail of the MRI slice", (0.40, 0.40, 0.46, 0.46)),
+    ("ring", "The ring's crest", (0.7515, 0.494, 0.7635, 0.506)),
+    ("mri", "A detail of the MRI slice", None),
 )
-"""Example, title and the box shown."""
+"""Example, title and the box shown, by default the liveliest."""
 
 
 if __name__ == "__main__":

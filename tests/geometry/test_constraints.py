@@ -114,3 +114,57 @@ def test_crossing_segments_are_refused() -> None:
 def test_segments_must_name_points() -> None:
     with pytest.raises(InputError, match=r"outside 0\.\.2"):
         triangulated([[0, 0], [1, 0], [0, 1]], [[0, 7]])
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(1, 15), st.integers(0, 10_000), st.integers(2, 30))
+def test_nearly_touching_loops_with_points_along_the_gap(power: int, seed: int, count: int) -> None:
+    """Two squares a hair apart, their facing sides strewn with points that almost face each other."""
+    gap = 10.0**-power
+    rng = np.random.default_rng(seed)
+    sides = [np.sort(rng.uniform(0.01, 0.99, count)) for _ in range(2)]
+    right = [np.column_stack([np.ones(count), sides[0]])]
+    left = [np.column_stack([np.full(count, 1.0 + gap), sides[1][::-1]])]
+    one = np.vstack([[[0, 0], [1, 0]], *right, [[1, 1], [0, 1]]])
+    two = np.vstack([[[1.0 + gap, 0], [2, 0], [2, 1], [1.0 + gap, 1]], *left])
+    n = count + 4
+    t = triangulated(np.vstack([one, two]), np.vstack([loop_edges(n), loop_edges(n, n)]))
+    check_constrained(t)
+    assert area(t) == pytest.approx(2.0 - gap, rel=1e-12)
+    of = t.triangles >= n
+    assert (of.all(axis=1) | ~of.any(axis=1)).all()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(3, 25), st.integers(0, 10_000), st.integers(-2, 2))
+def test_points_on_the_segments_or_an_ulp_beside_them(corners: int, seed: int, ulps: int) -> None:
+    """Midpoints of a polygon's sides, exact or moved by the least there is, and every corner twice."""
+    rng = np.random.default_rng(seed)
+    angle = 2 * np.pi * (np.arange(corners) + rng.uniform(0.1, 0.9, corners)) / corners
+    assume(np.diff(np.append(angle, angle[0] + 2 * np.pi)).max() < 3.0)
+    loop = np.column_stack([np.cos(angle), np.sin(angle)])
+    middle = 0.5 * (loop + np.roll(loop, -1, axis=0))
+    middle[:, 0] += ulps * np.spacing(np.abs(middle[:, 0]))
+    t = triangulated(np.vstack([loop, middle, loop]), loop_edges(corners))
+    check_constrained(t)
+    assert (t.same_as >= 0).sum() == corners
+    assert t.locked[t.neighbours == -1].all()
+    assert area(t) == pytest.approx(signed_area(loop), rel=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(2, 12), st.integers(0, 10_000))
+def test_collinear_segments_that_share_ends(count: int, seed: int) -> None:
+    """A line cut at lattice points, its pieces given in any order and direction, among points on the line itself."""
+    rng = np.random.default_rng(seed)
+    stations = np.arange(count + 1) / 7
+    line = np.column_stack([stations, 2 * stations])
+    others = np.round(rng.uniform(-1, 3, (20, 2)) * 7) / 7
+    pieces = np.column_stack([np.arange(count), np.arange(1, count + 1)])
+    pieces = np.where(rng.random((count, 1)) < 0.5, pieces, pieces[:, ::-1])[rng.permutation(count)]
+    points = np.vstack([line, others])
+    t = triangulated(points, pieces, bounding=np.zeros(count, dtype=bool))
+    check_constrained(t)
+    kept = np.where(t.same_as >= 0, t.same_as, np.arange(len(points)))
+    edges = edge_set(t)
+    assert all((min(a, b), max(a, b)) in edges for a, b in kept[pieces])
