@@ -40,19 +40,19 @@ MODES = ("plain", "guaranteed")
 
 
 class OutOfTime(Exception):
-    """A run took longer than ``LIMIT``."""
+    """A run took longer than allowed."""
 
 
 class Deadline:
     """A monitor that ends a run that takes too long."""
 
-    def __init__(self) -> None:
-        self.end = time.process_time() + LIMIT
+    def __init__(self, limit: float) -> None:
+        self.limit, self.end = limit, time.process_time() + limit
 
     def step(self, fraction: float, message: str = "") -> None:
         """Raise ``OutOfTime`` once the time is up."""
         if time.process_time() > self.end:
-            raise OutOfTime(f"stopped after {LIMIT:g} s at {fraction:.0%}: {message}")
+            raise OutOfTime(f"stopped after {self.limit:g} s at {fraction:.0%}: {message}")
 
 
 @dataclass
@@ -116,6 +116,7 @@ def main() -> None:
     parser.add_argument("--most", type=float, default=20_000, help="elements that a field may ask for")
     parser.add_argument("--modes", nargs="+", choices=MODES, default=list(MODES))
     parser.add_argument("--only", nargs="+", type=int, help="numbers of single runs, done whether or not they were")
+    parser.add_argument("--limit", type=float, default=LIMIT, help="processor seconds allowed for a run of one mode")
     parser.add_argument("--share", default="1/1", help="such as 2/3: the second of three processes, each with its file")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no run after this time")
     parser.add_argument("--twice", type=int, default=0, help="do every so many runs again with two threads")
@@ -134,7 +135,7 @@ def main() -> None:
         modes = [mode for mode in given.modes if given.only or (number, mode) not in done]
         if modes and time.perf_counter() < end:
             twice = bool(given.twice) and number % given.twice == 0
-            one_run(number, given.seed, given.most, modes, given.out, twice=twice)
+            one_run(number, given.seed, given.most, modes, given.out, twice=twice, limit=given.limit)
     done = read(given.out)
     if len(done) >= len(numbers) * len(given.modes) or given.only:
         print(table(list(done.values()), given.modes))
@@ -149,7 +150,7 @@ def warm_up() -> None:
             "points", rng, domain, ratio=10.0, most=500, options=options, background=background
         )
         for mode in MODES:
-            meshed(mode, domain, field, target, 0.9, 0, threads=1)
+            meshed(mode, domain, field, target, 0.9, 0, 1, LIMIT)
 
 
 def read(path: Path) -> dict[tuple[int, str], Outcome]:
@@ -160,7 +161,9 @@ def read(path: Path) -> dict[tuple[int, str], Outcome]:
     return {(row.number, row.mode): row for row in rows}
 
 
-def one_run(number: int, seed: int, most: float, modes: list[str], out: Path, *, twice: bool) -> None:
+def one_run(
+    number: int, seed: int, most: float, modes: list[str], out: Path, *, twice: bool, limit: float = LIMIT
+) -> None:
     """Mesh one random field on one shape in every mode, and write what happened."""
     rng = np.random.default_rng([seed, number])
     name = list(SHAPES)[number % len(SHAPES)]
@@ -184,12 +187,12 @@ def one_run(number: int, seed: int, most: float, modes: list[str], out: Path, *,
         faulthandler.dump_traceback_later(10 * LIMIT, exit=True)
         start = time.process_time()
         try:
-            raw, mesh, why = meshed(mode, domain, field, target, scale, number, threads=1)
+            raw, mesh, why = meshed(mode, domain, field, target, scale, number, 1, limit)
             outcome.seconds = round(time.process_time() - start, 2)
             outcome.why = why
             measure(outcome, mesh, raw, domain, field)
             if twice:
-                again = meshed(mode, domain, field, target, scale, number, threads=2)[1]
+                again = meshed(mode, domain, field, target, scale, number, 2, limit)[1]
                 outcome.same = np.array_equal(again.points, mesh.points) and np.array_equal(again.quads, mesh.quads)
         except Exception as error:  # a sweep goes on, whatever one run does
             outcome.error = "".join(traceback.format_exception_only(error)).strip()
@@ -207,10 +210,17 @@ def moved(domain: Domain, extent: float, shift: np.ndarray) -> Domain:
 
 
 def meshed(
-    mode: str, domain: Domain, field: SizeField, target: SizeField, scale: float, seed: int, threads: int
+    mode: str,
+    domain: Domain,
+    field: SizeField,
+    target: SizeField,
+    scale: float,
+    seed: int,
+    threads: int,
+    limit: float,
 ) -> tuple[QuadMesh, QuadMesh, str]:
     """Return the raw mesh, the finished one, and what the guarantee has to say where it does not hold."""
-    monitor, smooth = Deadline(), SmoothOptions(threads=threads)
+    monitor, smooth = Deadline(limit), SmoothOptions(threads=threads)
     if mode == "plain":
         raw = generated(domain, target, MeshOptions(scale=scale, seed=seed, threads=threads), monitor)
         return raw, improved(raw, domain, target, smooth, monitor), ""
