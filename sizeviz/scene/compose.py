@@ -260,8 +260,10 @@ def _failing(subject: Subject, view: ViewState) -> NDArray[np.intp]:
 def _outline(subject: Subject, ink: Color) -> list[Layer]:
     if subject.domain is None:
         return []
-    loops = subject.domain.loops
-    starts = np.cumsum([0, *(len(loop) for loop in loops)])
-    rings = [np.arange(a, b) for a, b in itertools.pairwise(starts)]
-    segments = np.vstack([np.column_stack([ring, np.roll(ring, -1)]) for ring in rings]).astype(np.int32)
-    return [LineLayer("outline", np.vstack(loops), segments, ink, 1.2)]
+    loops, lines = subject.domain.loops, subject.domain.lines
+    starts = np.cumsum([0, *(len(path) for path in (*loops, *lines))])
+    paths = [np.arange(a, b) for a, b in itertools.pairwise(starts)]
+    closed = [np.column_stack([ring, np.roll(ring, -1)]) for ring in paths[: len(loops)]]
+    open_ = [np.column_stack([path[:-1], path[1:]]) for path in paths[len(loops) :]]
+    segments = np.vstack([*closed, *open_]).astype(np.int32)
+    return [LineLayer("outline", np.vstack([*loops, *lines]), segments, ink, 1.2)]
