@@ -351,7 +351,8 @@ class Pane {
     const worst = this.mesh.worst[this.by.value === "quality" ? "quality" : "ratio"];
     if (worst === null || worst === undefined) return;
     const [x, y] = this.mesh.centre(worst);
-    this.look({ x, y, height: Math.max(this.mesh.reach(worst) * 18, this.board.size * 1e-5) });
+    const height = Math.min(Math.max(this.mesh.reach(worst) * 18, this.board.size * 1e-5), this.board.size);
+    this.look({ x, y, height });
     this.board.point(x, y);
   }
 
