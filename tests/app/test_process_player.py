@@ -175,7 +175,12 @@ def test_the_player_plays_by_mouse(qtbot, flat_window, run):
     qtbot.mouseClick(page.start, LEFT)
     assert page.start.text() == "Cancel" and not page.form.isEnabled()
     qtbot.waitUntil(lambda: ended(lessons.process), timeout=10_000)
-    assert run.asked[0].cells == 8 and page.transport.label.text() == "4 of 4" and page.start.text() == "Start"
+    assert (
+        page.heading.text() == "Iteration 3 of 3"
+        and run.asked[0].cells == 8
+        and page.transport.label.text() == "4 of 4"
+        and page.start.text() == "Start"
+    )
     assert page.pane.surface.canvas.spec.title == "Iteration 3" and page.pane.surface.canvas.edges
     qtbot.mouseClick(page.transport.back, LEFT)
     qtbot.waitUntil(lambda: page.pane.surface.canvas.spec.title == "Iteration 2", timeout=5000)

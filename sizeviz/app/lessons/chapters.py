@@ -175,7 +175,7 @@ def _ball(shown: LineShown) -> Chapter:
         f"<b>{headline(story, moment)}</b><br><br>{story_words(story, moment)}",
         "r = α · min { h(y) : |x − y| ≤ r }, &nbsp; h* = β·r/α &nbsp;&nbsp;(6)",
         "The box is as wide as the ball and as high as the size it stands for: it must fit under h. "
-        "Click the curve to ask at another place.",
+        "Its corners slide along the dotted lines, |x − y|/α. Click the curve to ask at another place.",
         ("none", "size-preserving"),
         ("alpha",),
     )
@@ -186,7 +186,7 @@ def _free(shown: LineShown) -> Chapter:
     return Chapter(
         5,
         TITLES[5],
-        f"Elements: {counts}. Size preserving costs elements, never more than twice those of gradient limiting with "
+        f"Elements: {counts}. Size preserving asks for at most twice as many elements as gradient limiting with "
         "ε = 1/α, and keeps every size asked for as long as α ≥ β.<br><br>"
         "In the plane nothing changes but the ball, which becomes round, and the mesh, which is made of "
         "quadrilaterals: "

@@ -71,7 +71,7 @@ class LinePlot(pyqtgraph.PlotWidget):
             axis.setTickFont(font)
             if words:
                 axis.setLabel(words, color=theme.text, **{"font-size": f"{10 * type_scale:g}pt"})
-            axis.enableAutoSIPrefix(False)  # a label that is set asks for it anew
+            axis.enableAutoSIPrefix(False)
         self.getPlotItem().getAxis("left").setWidth(AXIS_WIDTH * type_scale)
 
 
@@ -97,6 +97,8 @@ class SizePlot(LinePlot):
         super().__init__("Sizes along the line; arrow keys move the chosen handle, Tab and Shift+Tab leave the plot")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setYRange(-0.02, CEILING, padding=0.0)
+        # named ticks: left to itself the axis may name 0.5 as 500 thousandths
+        self.getPlotItem().getAxis("left").setTicks([[(k / 10, f"{k / 10:g}") for k in range(7)]])
         self.knots: tuple[tuple[float, float], ...] = ()
         self.chosen = 0
         self._dragged: int | None = None
@@ -236,7 +238,7 @@ class LinePlots(QWidget):
         """Write each curve's name where it has the most room."""
         symbols = {"none": "h", "gradient-limiting": "h<sub>g</sub>", "size-preserving": "h*"}
         places = {
-            "none": (0.08, (0.0, 1.0)),
+            "none": (0.08, (0.0, 1.12)),
             "gradient-limiting": (0.48, (-0.04, 0.75)),
             "size-preserving": (0.34, (1.04, 0.0)),
         }
@@ -268,7 +270,8 @@ class LinePlots(QWidget):
         self._dots(story.places[seen, 0], story.sizes[seen], 6.0, theme.muted)
         if not (moment.is_start or moment.is_end):
             self._dots(moment.place[:1], [moment.size], 12.0, theme.warn)
-            self._write("looks here", float(moment.place[0]), moment.size, theme.warn, (0.5, 1.15))
+            if not moment.shrank:  # what blocks is named below
+                self._write("looks here", float(moment.place[0]), moment.size, theme.warn, (0.5, 1.15))
         if moment.radius < story.trace.start:
             blocking = float(moment.blocking[0])
             asks = float(np.interp(blocking, story.places[:, 0], story.sizes))
@@ -336,7 +339,10 @@ class LinePlots(QWidget):
 
     def _label(self, html: str, color: str, anchor: tuple[float, float]) -> Any:
         size = f"{10 * self._type_scale:g}pt"
-        return pyqtgraph.TextItem(html=f'<span style="color:{color};font-size:{size}">{html}</span>', anchor=anchor)
+        plate = pyqtgraph.mkColor(self._colors.raised)
+        plate.setAlpha(170)  # words stay legible over a curve
+        words = f'<span style="color:{color};font-size:{size}">{html}</span>'
+        return pyqtgraph.TextItem(html=words, anchor=anchor, fill=plate)
 
     def _write(self, words: str, x: float, y: float, color: str, anchor: tuple[float, float]) -> None:
         label = self._label(words, color, anchor)

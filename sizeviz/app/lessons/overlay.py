@@ -10,6 +10,8 @@ from qtpy.QtGui import QColor, QFontMetrics, QPen, QPolygonF
 from sizeviz.app.lessons.ball import place_words
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
     from qtpy.QtGui import QPainter
 
     from sizeviz.app.lessons.why import Asked
@@ -47,27 +49,36 @@ class BallOverlay:
         if not (moment.is_start or moment.is_end):
             self._dot(painter, glass.pixel(*moment.place), 5.0 * unit, LOOK)
         if moment.radius < story.trace.start:
-            at = glass.pixel(*moment.blocking)
-            size = 7.0 * unit
-            diamond = QPolygonF([at + QPointF(*step) for step in ((0, -size), (size, 0), (0, size), (-size, 0))])
-            painter.setBrush(BLOCK)
-            painter.setPen(QPen(QColor("white"), 1.6 * unit))
-            painter.drawPolygon(diamond)
-            asks = story.sizes[((story.places - moment.blocking) ** 2).sum(axis=1).argmin()]
-            words = f"blocks: h = {asks:.3g}"
-            metrics = QFontMetrics(glass.font())
-            up = metrics.height() + 10.0 + size
-            glass.draw_label(painter, at - QPointF(0.5 * metrics.horizontalAdvance(words) + 6.0, up), words)
+            side = self._block(glass, painter, moment.blocking, centre)
+        else:
+            side = 1.0
         self._dot(painter, centre, 5.0 * unit, RIM)
         words = f"h* = {moment.candidate:.3g}" + ("" if moment.is_end else " ?")
-        width = QFontMetrics(glass.font()).horizontalAdvance(words) + 12.0
-        glass.draw_label(painter, centre + QPointF(-0.5 * width, 11.0 * unit), words)
+        self._write(glass, painter, centre, -side * 8.0 * unit, words)
 
     def words(self) -> str:
         """Return what is drawn, for those who cannot see it."""
         story = self.asked.story
         moment = story.at(self.asked.step)
         return f"Ball of radius {moment.radius:.4g} at {place_words(story.trace.centre)}"
+
+    def _block(self, glass: Glass, painter: QPainter, place: NDArray[np.float64], centre: QPointF) -> float:
+        """Mark the node that blocks, its words away from the centre; return 1 if that is downwards, -1 if upwards."""
+        story, at, size = self.asked.story, glass.pixel(*place), 7.0 * self.type_scale
+        side = 1.0 if at.y() > centre.y() else -1.0
+        diamond = QPolygonF([at + QPointF(*step) for step in ((0, -size), (size, 0), (0, size), (-size, 0))])
+        painter.setBrush(BLOCK)
+        painter.setPen(QPen(QColor("white"), 1.6 * self.type_scale))
+        painter.drawPolygon(diamond)
+        asks = story.sizes[((story.places - place) ** 2).sum(axis=1).argmin()]
+        self._write(glass, painter, at, side * 1.4 * size, f"blocks: h = {asks:.3g}")
+        return side
+
+    def _write(self, glass: Glass, painter: QPainter, at: QPointF, away: float, words: str) -> None:
+        """Write words centred below a pixel, or above it where ``away`` is negative."""
+        metrics = QFontMetrics(glass.font())
+        down = away if away > 0 else away - metrics.height() - 6.0
+        glass.draw_label(painter, at + QPointF(-0.5 * metrics.horizontalAdvance(words) - 6.0, down), words)
 
     def _circle(
         self, glass: Glass, painter: QPainter, centre: QPointF, radius: float, style: Qt.PenStyle, fill: bool

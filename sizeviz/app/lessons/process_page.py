@@ -22,7 +22,7 @@ from qtpy.QtWidgets import (
 
 from sizeviz.app.lessons.page import LessonPage, TermTable, rich, spaced
 from sizeviz.app.lessons.process import Asked, ProcessController, ProcessShown
-from sizeviz.app.lessons.process_words import process_rows, process_words
+from sizeviz.app.lessons.process_words import process_rows, process_title, process_words
 from sizeviz.app.lessons.transport import Transport
 from sizeviz.app.news import Notice
 from sizeviz.app.panels.controls import Form, choice, number
@@ -154,7 +154,7 @@ class EvolutionPlot(pyqtgraph.PlotWidget):
             f'<span style="color:{theme.muted}">– – converged at {limit:g}</span></div>'
         )
         label = pyqtgraph.TextItem(html=words, anchor=(1.0, 0.0))
-        label.setPos(right, high)
+        label.setPos(right - 0.4, high)  # left of a cursor that stands at the end
         self.addItem(label)
 
 
@@ -190,7 +190,7 @@ class ProcessPage(LessonPage):
         self.pane.set_edge_rule(self._edges_show)
         self.plot = EvolutionPlot()
         self.transport = Transport("Iteration")
-        self.heading, self.words, self.terms = QLabel("Algorithm 3"), rich(), TermTable()
+        self.heading, self.words, self.terms = QLabel(), rich(), TermTable()
         self.heading.setProperty("role", "title")
         self.words.setProperty("role", "lesson")
         self.form = self._build_form()
@@ -206,6 +206,7 @@ class ProcessPage(LessonPage):
 
     def show_process(self, shown: ProcessShown) -> None:
         """Show an iteration."""
+        self.heading.setText(process_title(shown))
         self.words.setText(spaced(process_words(shown)))
         rows = process_rows(shown)
         self.terms.show_rows(rows)
@@ -272,9 +273,9 @@ class ProcessPage(LessonPage):
     def _lay_out(self) -> None:
         left = QVBoxLayout()
         left.setSpacing(8)
-        left.addWidget(self.pane, 3)
+        left.addWidget(self.pane, 2)
         left.addWidget(self.transport)
-        left.addWidget(self.plot, 2)
+        left.addWidget(self.plot, 1)
         told = QWidget()
         told.setObjectName("told")
         column = QVBoxLayout(told)

@@ -20,6 +20,13 @@ INTRODUCTION = (
 """What is said before there is anything to show."""
 
 
+def process_title(shown: ProcessShown) -> str:
+    """Return the heading: which mesh is on show."""
+    if not shown.count:
+        return "Algorithm 3"
+    return "The uniform mesh" if shown.number == 0 else f"Iteration {shown.number} of {shown.count - 1}"
+
+
 def process_words(shown: ProcessShown) -> str:
     """Return what the iteration on show means, as rich text."""
     evolution = shown.evolution
