@@ -23,7 +23,8 @@ RATIOS = (9.0, 2.5, 1.3, 1.05)
 def row(k: int, n: int) -> Iteration:
     return Iteration(
         number=k, mesh=f"mesh-{k:03d}.vtu", n_quads=n * n, n_nodes=(n + 1) ** 2, background_ratio=0.9,
-        analytic_ratio=RATIOS[k], background_correct=100.0, analytic_correct=90.0, quality_min=0.5, quality_mean=0.9,
+        analytic_ratio=RATIOS[k], background_correct=100.0, analytic_correct=90.0,
+        strict_ratio=1.2 * RATIOS[k], strict_correct=80.0, quality_min=0.5, quality_mean=0.9,
         quality_max=1.0, quality_std=0.1, irregular=3.0, seconds=0.1,
     )  # fmt: skip
 
