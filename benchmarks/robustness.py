@@ -23,11 +23,12 @@ from random_fields import BACKGROUNDS, KINDS, random_field
 
 from sizeviz.conformity import boundary_nodes, judged
 from sizeviz.geometry import Domain
-from sizeviz.improvement import GuaranteeOptions, SmoothOptions, guaranteed, improved, tightened
+from sizeviz.improvement import GuaranteeOptions, SmoothOptions, improved, tightened
 from sizeviz.meshing import MeshOptions, generated
 from sizeviz.meshing.checks import edges_of
 from sizeviz.sizing import PreserveOptions
 from sizeviz.sources.shapes import SHAPES, shape
+from sizeviz.study.promise import promised
 
 if TYPE_CHECKING:
     from sizeviz.geometry import QuadMesh
@@ -226,7 +227,9 @@ def meshed(
         return raw, improved(raw, domain, target, smooth, monitor), ""
     tight = tightened(field, target, monitor=monitor)
     raw = generated(domain, tight, MeshOptions(scale=1.0, seed=seed, threads=threads), monitor)
-    mesh, report = guaranteed(raw, domain, tight, field, GuaranteeOptions(smooth=smooth), monitor)
+    meshing, options = MeshOptions(seed=seed, threads=threads), GuaranteeOptions(smooth=smooth)
+    best = promised(domain, field, tight, raw, meshing, options, monitor)
+    raw, mesh, report = best.raw, best.mesh, best.report
     return raw, mesh, "" if report.holds else report.verdict
 
 

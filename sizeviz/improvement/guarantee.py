@@ -45,6 +45,8 @@ LOOKS = 4
 """Elements with R below CLOSE are judged again after every LOOKS sweeps only."""
 LATTICE = 0.5
 """Share of elements with sizes that others have too from which a mesh is taken for a lattice."""
+MORE_ROUNDS = 2
+"""Rounds of wide clean-up over those of plain meshes: fewer irregular nodes leave more room for the repair."""
 SAME = 1e-9
 """Relative difference up to which sizes are the same."""
 FLAT = 1e-6
@@ -65,6 +67,9 @@ class GuaranteeOptions:
     polish : int
         Passes that raise the worst elements at the end, 0 or more. Default 3.
 
+    hopeless : float
+        Share of elements still wrong after smoothing, above 0, beyond which the repair is not begun. Default 1.
+
     Raises
     ------
     InputError
@@ -74,11 +79,14 @@ class GuaranteeOptions:
     smooth: SmoothOptions = field(default_factory=SmoothOptions)
     rounds: int = 16
     polish: int = 3
+    hopeless: float = 1.0
 
     def __post_init__(self) -> None:
         for name, value in (("rounds", self.rounds), ("polish", self.polish)):
             if not (isinstance(value, int) and value >= 0):
                 raise InputError(f"{name} is {value}; it must be a whole number, 0 or more")
+        if not 0.0 < self.hopeless <= 1.0:
+            raise InputError(f"hopeless is {self.hopeless}; it is a share of the elements, above 0 and at most 1")
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,6 +162,8 @@ def guaranteed(
     work = _prepared(mesh, domain, tight, options.smooth, SubMonitor(monitor, 0.0, 0.6))
     judge = Judge(work, reference)
     _aware(work, judge, SubMonitor(monitor, 0.6, 0.7))
+    if len(judge.wrong) > options.hopeless * len(work.quads):
+        return work.result(), _report(work, judge)
     mender = Mender(work, judge)
     floor = options.smooth.floor
     for n in range(PURSUITS):
@@ -169,15 +179,16 @@ def guaranteed(
 
 
 def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
-    """Clean up and smooth; a mesh that is mostly lattice by its shapes alone, which leaves the lattice as it is."""
+    """Clean up and smooth; a mesh that is mostly lattice without the wide clean-up, which would spread its defects."""
     work = Workspace(mesh, domain, tight, options)
     work.aim()
     sizes = np.sort(work.sizes)
     same = np.diff(sizes) <= SAME * sizes[:-1]
     # beside inner lines clean-up needs its rounds, and sizes that keep their nodes from sliding away
-    if options.objective != "reciprocal" or same.mean() < LATTICE or domain.lines:
-        return improve(mesh, domain, tight, options, monitor)
-    return improve(mesh, domain, tight, replace(options, rounds=0), monitor)
+    # beside inner lines clean-up needs its rounds, whatever the sizes
+    lattice = same.mean() >= LATTICE and not domain.lines
+    rounds = 0 if lattice else MORE_ROUNDS * options.rounds
+    return improve(mesh, domain, tight, replace(options, rounds=rounds), monitor)
 
 
 def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:

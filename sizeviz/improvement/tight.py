@@ -30,7 +30,7 @@ STEEP = 0.15
 PLATEAU = 0.3
 """Share of the elements that lie on plateaus of the user's field from which plateaus rule."""
 SECOND_SCALE = 0.75
-SECOND_SHARE = 0.9
+SECOND_SHARE = 0.94
 """Where the field is no grid, h* of this alpha and share of the factor keeps room in narrow valleys."""
 LEVEL = 0.01
 """Share of the elements from which a size that the field keeps to is a plateau of its own."""

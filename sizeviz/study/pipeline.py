@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 
 from sizeviz.conformity import judged
 from sizeviz.errors import InputError
-from sizeviz.improvement import GuaranteeOptions, guaranteed, improved, tightened
+from sizeviz.improvement import GuaranteeOptions, improved, tightened
 from sizeviz.meshing import generated
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sizing import AnalyticSize, ideal_count, limited, preserved
+from sizeviz.study.promise import promised
 from sizeviz.study.study import STAGES, MethodRun, Study
 
 if TYPE_CHECKING:
@@ -140,8 +141,9 @@ def _smooth(study: Study, method: str, run: MethodRun, monitor: Monitor) -> Meth
     if method == GUARANTEED:
         assert run.tight is not None
         wanted = GuaranteeOptions(smooth=options)
-        mesh, reached = guaranteed(run.raw, study.source.domain, run.tight, _asked(study), wanted, monitor)
-        return replace(run, mesh=mesh, guarantee=reached)
+        meshing = _with_threads(study.options).mesh
+        best = promised(study.source.domain, _asked(study), run.tight, run.raw, meshing, wanted, monitor)
+        return replace(run, tight=best.tight, raw=best.raw, mesh=best.mesh, guarantee=best.report)
     if not study.options.smoothing:
         return replace(run, mesh=run.raw)
     return replace(run, mesh=improved(run.raw, study.source.domain, run.target, options, monitor))

@@ -1,0 +1,64 @@
+"""The promise R <= 1: kept by a finer mesh where the first cannot be repaired."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sizeviz.conformity import judged
+from sizeviz.errors import InputError
+from sizeviz.geometry import Domain
+from sizeviz.improvement import GuaranteeOptions, guaranteed, tightened
+from sizeviz.meshing import MeshOptions, generated
+from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, preserved
+from sizeviz.study.promise import promised
+
+
+def jump() -> SizeField:
+    """Return sizes that jump by a factor of 20 along an oblique line."""
+    background = BackgroundMesh.unit_square_grid(65, 65)
+    return SizeField(background, np.where(background.points @ [1.0, 0.4] > 0.7, 0.4, 0.02), "jump")
+
+
+def test_a_mesh_that_is_far_too_coarse_is_replaced() -> None:
+    field, domain = jump(), Domain.unit_square()
+    tight = tightened(field, preserved(field, PreserveOptions(alpha=1.0)))
+    coarse = generated(domain, tight, MeshOptions(scale=1.6))
+    best = promised(domain, field, tight, coarse)
+    assert best.report.holds
+    assert best.raw is not coarse
+    assert best.raw.n_quads > coarse.n_quads
+    assert best.tight.sizes.max() < tight.sizes.max()
+    report = judged(best.mesh, field)
+    assert report.correct_percent["max-edge"] == 100.0
+    assert report.n_inverted == 0
+    assert best.mesh.areas.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_mesh_that_can_be_repaired_is_kept() -> None:
+    field, domain = jump(), Domain.unit_square()
+    tight = tightened(field, preserved(field, PreserveOptions()))
+    raw = generated(domain, tight, MeshOptions(scale=1.0))
+    best = promised(domain, field, tight, raw)
+    assert best.report.holds
+    assert best.raw is raw and best.tight is tight
+
+
+def test_a_limit_on_the_elements_ends_the_search_with_a_report() -> None:
+    field, domain = jump(), Domain.unit_square()
+    tight = tightened(field, preserved(field, PreserveOptions(alpha=1.0)))
+    coarse = generated(domain, tight, MeshOptions(scale=1.6))
+    best = promised(domain, field, tight, coarse, MeshOptions(max_elements=100))
+    assert not best.report.holds
+    assert "left" in best.report.verdict
+    assert len(best.report.reasons) == len(best.report.elements) > 0
+    assert best.raw is coarse
+
+
+def test_a_hopeless_mesh_is_not_repaired() -> None:
+    field, domain = jump(), Domain.unit_square()
+    coarse = generated(domain, field, MeshOptions(scale=1.6))
+    mesh, report = guaranteed(coarse, domain, field, field, GuaranteeOptions(hopeless=0.01))
+    assert len(report.elements) > 0.01 * mesh.n_quads
+    with pytest.raises(InputError, match="hopeless"):
+        GuaranteeOptions(hopeless=0.0)
