@@ -169,6 +169,9 @@ def test_another_source_puts_the_ball_away(qtbot, opened, lessons):
     with qtbot.waitSignal(opened.controller.settled, timeout=10_000):
         opened.controller.open_source("mri")
     assert lessons.why.asked is None and not lessons.why.is_open
+    camera = opened.board.panes[0].surface.camera
+    assert (camera.x, camera.y) == (0.5, 0.5) and camera.height > 1.0  # the new domain as a whole
+    assert opened.board.panes[0].view.color_by == "ratio"
 
 
 def test_an_audience_sees_panes_and_their_explanation_only(opened, lessons):

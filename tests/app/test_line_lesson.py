@@ -131,6 +131,15 @@ def test_opening_a_source_leaves_the_lesson_and_shows_the_panels(qtbot, flat_win
     assert flat_window.pages.currentWidget() is flat_window.board and flat_window.pipeline_dock.isVisible()
 
 
+def test_a_study_dropped_on_a_lesson_is_shown(qtbot, opened):
+    from app.fakes import fake_source
+
+    opened.actions_["lesson-line"].trigger()
+    with qtbot.waitSignal(opened.controller.settled, timeout=10_000):
+        opened.controller.set_source(fake_source("mri"), "Open a study")
+    assert opened.pages.currentWidget() is opened.board and opened.inspector_dock.isVisible()
+
+
 def test_a_run_that_ends_does_not_end_the_lesson(qtbot, opened):
     opened.actions_["lesson-line"].trigger()
     assert not opened.pipeline_dock.isVisible()

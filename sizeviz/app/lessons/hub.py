@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from sizeviz.app.panes.canvas import Canvas
     from sizeviz.app.theme import Theme
     from sizeviz.app.window import MainWindow
+    from sizeviz.study import Study
 
 PRESENTER_SCALE = 1.5
 """How much larger words are in presenter mode."""
@@ -60,7 +61,7 @@ class Lessons(QObject):
         on("explain", self.panes.explain)
         on("presenter", self.set_presenter)
         window.welcome.lesson_requested.connect(self.open_line)
-        window.controller.opened.connect(lambda spec: self.leave())
+        window.controller.study_changed.connect(self._on_study)
 
     # -- pages -----------------------------------------------------------------------------------------------------
 
@@ -131,6 +132,11 @@ class Lessons(QObject):
             apply_theme(QApplication.instance(), self._window.theme, 1.0)
 
     # -- inside ----------------------------------------------------------------------------------------------------
+
+    def _on_study(self, old: Study | None, new: Study) -> None:
+        """Show what was opened while a lesson was on show."""
+        if old is None or old.source is not new.source:
+            self.leave()
 
     def _pages(self) -> list[LessonPage]:
         return [page for page in (self._line_page, self._process_page) if page is not None]

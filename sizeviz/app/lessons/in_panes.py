@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from sizeviz.app.lessons.why import Asked
     from sizeviz.app.panes.pane import Pane
     from sizeviz.app.window import MainWindow
+    from sizeviz.geometry import Domain
     from sizeviz.scene.camera import Camera2D
     from sizeviz.scene.view import ViewState
 
@@ -48,6 +49,7 @@ class PaneLessons(QObject):
         self._views: list[tuple[Pane, ViewState, Camera2D]] = []
         self._picking = False
         self._usual_width: int | None = None
+        self._domain: Domain | None = None
         self._framed: BallStory | None = None
         self._connect()
 
@@ -157,7 +159,8 @@ class PaneLessons(QObject):
 
     def _make_room(self) -> None:
         """Show the sizes the ball shrinks among, and h* beside them; what was there comes back afterwards."""
-        panes = self._window.board.visible_panes
+        panes, study = self._window.board.visible_panes, self._window.controller.study
+        self._domain = None if study is None else study.source.domain
         self._views = [(pane, pane.view, pane.surface.camera) for pane in panes]
         plain = {"cmap": None, "range_mode": "auto", "low": None, "high": None, "log": None, "classes": 0}
         for pane, quantity in zip(panes, ("prescribed", "target"), strict=False):
@@ -168,9 +171,14 @@ class PaneLessons(QObject):
 
     def _restore(self) -> None:
         views, self._views = self._views, []
+        study = self._window.controller.study
+        same = study is not None and study.source.domain is self._domain
         for pane, view, camera in views:
             pane.set_view(view)
-            pane.surface.move_camera(camera)
+            if same:
+                pane.surface.move_camera(camera)
+            else:
+                pane.surface.fit()  # where one looked before is another domain's place
         self.panel.show_no_ball()
         self.refresh()
 

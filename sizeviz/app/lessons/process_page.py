@@ -104,7 +104,7 @@ class EvolutionPlot(pyqtgraph.PlotWidget):
         for level, style in ((1.0, Qt.PenStyle.SolidLine), (evolution.limit, Qt.PenStyle.DashLine)):
             self.addItem(pyqtgraph.InfiniteLine(np.log10(level), 0, pyqtgraph.mkPen(theme.muted, width=1, style=style)))
         self._line(x, field, theme.bad, "o")
-        self._line(x[1:], background[1:], theme.accent, "t")
+        self._line(x[1:], background[1:], theme.accent, "t1")
         cursor = pyqtgraph.mkPen(theme.text, width=1.6 * self._scale)
         self.addItem(pyqtgraph.InfiniteLine(shown.number, 90, cursor))
         both = np.concatenate([field, background[1:], [0.0, np.log10(evolution.limit)]])
