@@ -121,6 +121,7 @@ class Watch:
                 frame = sys._current_frames().get(self._main)
                 lines = [f"{Path(f.filename).name}:{f.lineno} {f.name}" for f in traceback.extract_stack(frame)]
                 self._where = " < ".join(reversed(lines[-7:]))
+                del frame  # it would keep the thread's painters alive
 
 
 class Soak:
