@@ -14,5 +14,5 @@ HERE = Path(__file__).parent
 
 if __name__ == "__main__":
     study = Study(load("expr:min(0.12, max(0.015, abs(hypot(x - 0.5, y - 0.5) - 0.3)))"))
-    film = alpha_film(study, [float(alpha) for alpha in np.geomspace(1.0, 6.0, 16)])
-    print(save_film(film, HERE / "turning-alpha.gif", width=800))
+    film = alpha_film(study, [float(alpha) for alpha in np.geomspace(1.0, 6.0, 12)])
+    print(save_film(film, HERE / "turning-alpha.gif", width=760))

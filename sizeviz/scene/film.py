@@ -140,7 +140,7 @@ def save_film(film: Film, path: str | Path, *, width: int = 1280, monitor: Monit
     pictures = _pictures(film, scales, width - width % 2, monitor)
     with replacing(path) as part:
         if path.suffix.lower() == ".gif":
-            _write_gif(part, pictures, film.seconds)
+            _write_gif(part, pictures, film.seconds, _palette(film, scales))
         else:
             _write_mp4(part, pictures, film.seconds)
     return path
@@ -250,7 +250,7 @@ def _plotted(curve: Curve, place: float, width: int, height: int, dark: bool) ->
     from matplotlib.figure import Figure
 
     ground, ink = (tuple(c / 255.0 for c in color) for color in (DARK if dark else LIGHT))
-    dots = max(width / 12.0, 40.0)
+    dots = max(width / 9.0, 40.0)
     figure = Figure(figsize=(width / dots, height / dots), dpi=dots, facecolor=ground, layout="constrained")
     canvas = FigureCanvasAgg(figure)
     axes: Any = figure.add_subplot(facecolor=ground)
@@ -274,9 +274,22 @@ def _plotted(curve: Curve, place: float, width: int, height: int, dark: bool) ->
     return np.ascontiguousarray(pixels)
 
 
-def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], seconds: float) -> None:
-    """Write the pictures with one palette each; identical neighbours cost next to nothing."""
-    frames = [Pillow.fromarray(picture).quantize(255, dither=Pillow.Dither.NONE) for picture in pictures]
+def _palette(film: Film, scales: Sequence[ColorScale]) -> Pillow.Image:
+    """Return 256 colours that serve a whole film: those of its bars, bare and under edges, greys, and the curve's."""
+    ground, ink = (np.array(color, dtype=np.float64) for color in (DARK if film.views[0].dark else LIGHT))
+    bars = {(scale.cmap, scale.norm, scale.low, scale.high): scale for scale in scales}.values()
+    own = np.vstack([scale.bar(120 // len(bars)) for scale in bars]).astype(np.float64)
+    greys = ground + np.linspace(0.0, 1.0, 256 - 2 * len(own) - len(film.curve.lines))[:, None] * (ink - ground)
+    lines = [[int(color[k : k + 2], 16) for k in (1, 3, 5)] for _, color in film.curve.lines.values()]
+    colors = np.vstack([own, 0.7 * own + 0.3 * ink, greys, np.array(lines, dtype=np.float64).reshape(-1, 3)])
+    palette = Pillow.new("P", (1, 1))
+    palette.putpalette(np.rint(colors).astype(np.uint8).tobytes())
+    return palette
+
+
+def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], seconds: float, palette: Pillow.Image) -> None:
+    """Write the pictures with one palette, so that a colour is the same in all; no more than what changes is kept."""
+    frames = [Pillow.fromarray(picture).quantize(palette=palette, dither=Pillow.Dither.NONE) for picture in pictures]
     duration = max(round(1000 * seconds), 20)
     frames[0].save(path, "GIF", save_all=True, append_images=frames[1:], duration=duration, loop=0, optimize=False)
 
