@@ -6,13 +6,17 @@ Numba's ``parallel=True`` is not used: its fallback threading layer aborts the p
 from __future__ import annotations
 
 import os
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, wait
+from functools import cache
 from typing import TYPE_CHECKING
 
 from sizeviz.monitor import SILENT, Monitor
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+MOST_HELPERS = 64
+"""Threads that can help at once; a thread is only made when all others are busy."""
 
 
 def default_threads() -> int:
@@ -34,8 +38,9 @@ def run_chunks(
 ) -> None:
     """Call ``kernel(start, stop)`` for consecutive ranges that cover ``range(count)``.
 
-    The kernels run on worker threads, so they must release the GIL and write disjoint parts of their output;
-    the monitor is stepped on the calling thread after each chunk, so a chunk should last 20 to 50 ms.
+    The calling thread and its helpers take the ranges in order, so kernels must release the GIL and write disjoint
+    parts of their output; the monitor is stepped on the calling thread after each range of its own, so one should last
+    no more than 20 to 50 ms.
 
     Parameters
     ----------
@@ -53,25 +58,35 @@ def run_chunks(
     Raises
     ------
     Cancelled
-        If the monitor says so; chunks not yet begun are dropped, those under way are waited for.
+        If the monitor says so; ranges not yet begun are dropped, those under way are waited for.
     """
     monitor.step(0.0, message)
     ranges = [(start, min(start + chunk, count)) for start in range(0, count, chunk)]
     workers = min(threads or default_threads(), len(ranges))
-    if workers <= 1:
-        for done, (start, stop) in enumerate(ranges, 1):
-            kernel(start, stop)
-            monitor.step(done / len(ranges), message)
-        return
-    with ThreadPoolExecutor(workers) as pool:
-        pending: set[Future[object]] = {pool.submit(kernel, start, stop) for start, stop in ranges}
-        try:
-            while pending:
-                done_now, pending = wait(pending, return_when=FIRST_COMPLETED)
-                for future in done_now:
-                    future.result()
-                monitor.step(1.0 - len(pending) / len(ranges), message)
-        except BaseException:
-            for future in pending:
-                future.cancel()
-            raise
+    todo = iter(range(len(ranges)))
+
+    def work() -> None:
+        # one iterator for all threads: its next() is a single step of the interpreter
+        for k in todo:
+            kernel(*ranges[k])
+
+    helpers = [_pool().submit(work) for _ in range(workers - 1)]
+    try:
+        for k in todo:
+            kernel(*ranges[k])
+            monitor.step(k / len(ranges), message)
+    finally:
+        for _ in todo:  # after an error nobody begins another range
+            pass
+        # a helper that a busy pool has not begun is not needed any more; the others may still use the arrays
+        begun = [helper for helper in helpers if not helper.cancel()]
+        wait(begun)
+    for helper in begun:
+        helper.result()
+    monitor.step(1.0, message)
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    """Return the threads that help whoever calls ``run_chunks``; they are started when first needed, and kept."""
+    return ThreadPoolExecutor(MOST_HELPERS, thread_name_prefix="sizeviz")

@@ -138,7 +138,7 @@ class Workspace:
 
     def aim(self) -> None:
         """Look up the target of every element and the target scale c."""
-        run_chunks(self._look_up, len(self.quads), chunk=65536, threads=self.options.threads)
+        run_chunks(self._look_up, len(self.quads), chunk=16384, threads=self.options.threads)
         self.scale = _sweep_kernels.scale_targets(self.xy, self.quads, self.sizes, self.inv)
 
     def _look_up(self, first: int, last: int) -> None:

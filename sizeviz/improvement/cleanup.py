@@ -43,7 +43,7 @@ RESCUES = ((0.6, 2.2), (0.4, 3.0), (0.3, 3.0), (0.2, 4.0), (0.05, 8.0), (1e-3, 1
 """Quality demanded of a rescue and the longest edge over target size it may leave, ever more modest."""
 MOST_SPLIT = 12
 """Change of valence energy that the split of a node may bring; 4 at a regular one."""
-BUDGET = 256
+BUDGET = 1024
 """Nodes visited between two looks at the monitor."""
 
 
