@@ -285,9 +285,14 @@ def lost_constraints(raw: QuadMesh, mesh: QuadMesh, domain: Domain) -> int:
             path = shapely.LineString(np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points)
             ends = shapely.distance(path, shapely.points(mesh.points)) < near
             on = edges[ends[edges].all(axis=1)]
-            on = on[shapely.distance(path, shapely.points(mesh.points[on].mean(axis=1))) < 1e-3 * path.length]
-            covered = np.hypot(*(mesh.points[on[:, 1]] - mesh.points[on[:, 0]]).T).sum()
-            lost += int(abs(covered - path.length) > 0.01 * path.length)
+            length = np.hypot(*(mesh.points[on[:, 1]] - mesh.points[on[:, 0]]).T)
+            on = on[shapely.distance(path, shapely.points(mesh.points[on].mean(axis=1))) < 0.3 * length]
+            # along the line, which a chord of a curve is shorter than
+            at = shapely.line_locate_point(path, shapely.points(mesh.points[on]))
+            step = np.abs(at[:, 1] - at[:, 0])
+            loop = curve.closed or np.array_equal(curve.points[0], curve.points[-1])
+            covered = (np.minimum(step, path.length - step) if loop else step).sum()
+            lost += int(abs(covered - path.length) > 1e-6 * path.length)
     return lost
 
 

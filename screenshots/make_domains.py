@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 PANE, GAP, TEXT = 620, 28, 19
+FEWEST = 400
+"""Elements that a detail must show."""
 
 
 def main() -> None:
@@ -99,8 +101,10 @@ def _liveliest(study: Study, side: float = 0.08) -> tuple[float, float, float, f
              ((centre[:, 0], x0, int((x1 - x0) / side)), (centre[:, 1], y0, int((y1 - y0) / side)))]  # fmt: skip
     number = cells[0] * 1000 + cells[1]
     names, which = np.unique(number, return_inverse=True)
-    mean = np.bincount(which, log_area) / np.bincount(which)
-    best = names[np.argmax(np.bincount(which, (log_area - mean[which]) ** 2) / np.bincount(which))]
+    count = np.bincount(which)
+    mean = np.bincount(which, log_area) / count
+    spread = np.bincount(which, (log_area - mean[which]) ** 2) / count
+    best = names[np.argmax(np.where(count > FEWEST, spread, 0.0))]
     column, row = divmod(int(best), 1000)
     return x0 + column * side, y0 + row * side, x0 + (column + 1) * side, y0 + (row + 1) * side
 
