@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import tempfile
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from itertools import chain
@@ -295,21 +297,27 @@ def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], seconds: float
 
 
 def _write_mp4(path: Path, pictures: Iterator[NDArray[np.uint8]], seconds: float) -> None:
-    """Write the pictures as H.264, which every player and browser knows."""
-    import imageio_ffmpeg
+    """Write the pictures as H.264, which every player and browser knows; ffmpeg works in a process of its own."""
+    from imageio_ffmpeg import get_ffmpeg_exe
 
     first = next(pictures)
     height, width = first.shape[:2]
     repeats = max(round(FRAMES_A_SECOND * seconds), 1)
-    writer = imageio_ffmpeg.write_frames(
-        str(path), (width, height), fps=FRAMES_A_SECOND, codec="libx264", pix_fmt_out="yuv420p", macro_block_size=2,
-        output_params=["-crf", "20", "-movflags", "+faststart"],
-    )  # fmt: skip
-    writer.send(None)
-    try:
-        for picture in chain([first], pictures):
-            data = np.ascontiguousarray(picture)
-            for _ in range(repeats):
-                writer.send(data)
-    finally:
-        writer.close()
+    raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(FRAMES_A_SECOND), "-i", "-"]
+    coded = ["-an", "-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(path)]
+    command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *raw, *coded]
+    with tempfile.TemporaryFile() as said, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said) as child:
+        assert child.stdin is not None
+        try:
+            for picture in chain([first], pictures):
+                child.stdin.write(np.ascontiguousarray(picture).tobytes() * repeats)
+            child.stdin.close()
+        except BrokenPipeError:
+            child.wait()
+        except BaseException:
+            child.kill()
+            raise
+        if child.wait():
+            said.seek(0)
+            words = said.read().decode(errors="replace").strip().splitlines()
+            raise InputError(f"the film could not be written ({words[-1] if words else 'ffmpeg failed'})")
