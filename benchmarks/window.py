@@ -52,6 +52,7 @@ def open_window(folder: Path, engine=None, size=(1500, 940)):
 
     from sizeviz.app.engine import PipelineEngine
     from sizeviz.app.launch import SWITCH_SECONDS, application
+    from sizeviz.app.panes.canvas import preload
     from sizeviz.app.settings import Settings
     from sizeviz.app.window import MainWindow
 
@@ -62,6 +63,8 @@ def open_window(folder: Path, engine=None, size=(1500, 940)):
     window.show()
     window.activateWindow()
     person = Person(window)
+    loading = preload()
+    person.wait(lambda: not loading.is_alive(), 60)
     person.rest(400)
     return window, person
 
@@ -173,17 +176,15 @@ def brush(folder: Path, quick: bool) -> None:
     for k in range(24):
         person.wait(lambda: not controller.jobs.is_busy, 300)
         person.rest(60)
-        at = person.spot(first, 0.25 + 0.02 * k, 0.25 + 0.015 * k)
+        at = person.spot(first, 0.26 + 0.02 * k, 0.26 + 0.015 * k)
         before = None if controller.preview is None else controller.preview.targets.get("size-preserving")
         shown.clear()
         began, cpu = time.perf_counter(), time.process_time()
         QTest.mouseMove(glass, at + QPoint(0, 0))
-        while not shown:
-            process()
+        spin(lambda: shown)
         repaints.append(shown[0] - began)
         cpus.append(time.process_time() - cpu)
-        while controller.preview.targets.get("size-preserving") is before:
-            process()
+        spin(lambda before=before: controller.preview.targets.get("size-preserving") is not before)
         frames = second.surface.canvas.view.frames
         for _ in range(200):
             if second.surface.canvas.view.frames > frames:
@@ -214,8 +215,7 @@ def pan(folder: Path, quick: bool) -> None:
     for k in range(30):
         surface.move_camera(surface.camera.panned(3 if k % 20 < 10 else -3, 1, surface.height()))
         swapped.clear()
-        while not swapped:
-            process()
+        spin(lambda: swapped)
     took, cpu = time.perf_counter() - began, time.process_time() - cpu
     tell("panning two panes of 200k elements", 30 / took, "fps", 5, at_least=True)
     print(f"    {1000 * cpu / 30:.0f} CPU ms a frame, moved; ", end="")
@@ -225,8 +225,7 @@ def pan(folder: Path, quick: bool) -> None:
         for view in views:
             view.redraw()
         swapped.clear()
-        while not swapped:
-            process()
+        spin(lambda: swapped)
     took, cpu = time.perf_counter() - began, time.process_time() - cpu
     print(f"{1000 * took / 5:.0f} ms, {1000 * cpu / 5:.0f} CPU ms drawn anew")
     window.close()
@@ -275,6 +274,14 @@ def apart(folder: Path) -> dict[str, str]:
 def resident() -> float:
     with open("/proc/self/statm") as file:
         return int(file.read().split()[1]) * resource.getpagesize() / 1e6
+
+
+def spin(ready, seconds: float = 10.0) -> None:
+    """Let the event loop go round, without a pause, until something is so."""
+    end = time.perf_counter() + seconds
+    while not ready():
+        assert time.perf_counter() < end, "it never came"
+        process()
 
 
 def process() -> None:

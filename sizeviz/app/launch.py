@@ -130,6 +130,10 @@ def _grab_when_settled(window: MainWindow, path: str, code: list[int]) -> None:
     from qtpy.QtCore import QTimer
 
     def grab() -> None:
+        if window.turns.is_busy:
+            window.turns.finish()
+            QTimer.singleShot(300, grab)
+            return
         if not window.grab().save(path):
             print(f"error: {path}: cannot be written; choose another place", file=sys.stderr)
             code[0] = 2

@@ -255,7 +255,8 @@ class MainWindow(QMainWindow):
             panel.show_options(study.options)
         panes = [partial(self.board.refresh_pane, pane) for pane in self.board.visible_panes]
         self.turns.take([*panes, self.show_judgement])
-        if sum(run.mesh.n_quads for run in study.runs.values() if run.mesh is not None) < LARGE:
+        elements = sum(run.mesh.n_quads for run in study.runs.values() if run.mesh is not None)
+        if elements < LARGE and all(pane.surface.canvas.is_ready for pane in self.board.visible_panes):
             self.turns.finish()
         self.show_state()
 

@@ -98,6 +98,8 @@ class FakeEngine:
 class FlatCanvas:
     """Remembers what it was shown."""
 
+    is_ready = True
+
     def __init__(self, parent: QWidget) -> None:
         self._widget = QWidget(parent)
         self.spec = None

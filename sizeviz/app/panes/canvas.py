@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 class Canvas(Protocol):
     """What a pane needs of its drawing widget; tests without OpenGL bring their own."""
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether showing a scene costs no start-up."""
+
     def widget(self) -> QWidget:
         """Return the widget to lay out."""
 
@@ -60,6 +64,11 @@ class GLCanvas:
     def view(self) -> PaneView | None:
         """The OpenGL widget, None until there was something to draw."""
         return None if self._drawing is None else self._drawing[0]
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether the OpenGL widget is there."""
+        return self._drawing is not None
 
     def widget(self) -> QWidget:
         """Return the widget to lay out."""
@@ -112,6 +121,8 @@ class GLCanvas:
         return view, renderer
 
 
-def preload() -> None:
+def preload() -> Thread:
     """Load VTK beside the window, once its first page is there; whoever needs it earlier waits for the rest only."""
-    Thread(target=import_module, args=("sizeviz.app.panes.view",), name="preload").start()
+    thread = Thread(target=import_module, args=("sizeviz.app.panes.view",), name="preload")
+    thread.start()
+    return thread
