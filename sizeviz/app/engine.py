@@ -6,6 +6,7 @@ Everything heavy is imported inside the calls, on the worker, so that the window
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from importlib import import_module
 from typing import TYPE_CHECKING, Protocol
 
 from sizeviz.compiled import prepared
@@ -89,6 +90,7 @@ class PipelineEngine:
 
     def load(self, spec: str, monitor: Monitor = SILENT) -> Source:
         """Return an example, a file or ``expr:FORMULA`` as a source."""
+        import_module("sizeviz.study")  # the window needs it next: loaded here, it does not hold the window up
         rest = prepared(monitor)
         from sizeviz.sources import load
 

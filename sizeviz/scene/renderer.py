@@ -34,6 +34,7 @@ class Renderer:
         self._shown: dict[str, tuple[Layer, Any, Any]] = {}
         self.spec: SceneSpec | None = None
         self._edges = False
+        plotter.camera_set = True  # it is set by ``look``; asked for unset, pyvista would fit it and draw
         plotter.enable_parallel_projection()
         plotter.remove_all_lights()
 

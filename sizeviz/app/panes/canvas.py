@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from sizeviz.scene.spec import SceneSpec
 
 
+PRELOADED = ("sizeviz.app.panes.view", "sizeviz.scene.renderer", "sizeviz.study")
+"""What is loaded once the first page is there: panes need the first two, and opening anything the third."""
+
+
 class Canvas(Protocol):
     """What a pane needs of its drawing widget; tests without OpenGL bring their own."""
 
@@ -123,6 +127,6 @@ class GLCanvas:
 
 def preload() -> Thread:
     """Load VTK beside the window, once its first page is there; whoever needs it earlier waits for the rest only."""
-    thread = Thread(target=import_module, args=("sizeviz.app.panes.view",), name="preload")
+    thread = Thread(target=lambda: [import_module(name) for name in PRELOADED], name="preload")
     thread.start()
     return thread
