@@ -36,6 +36,9 @@ WORKER = Path(__file__).with_name("_gmsh_worker.py")
 POLL_SECONDS = 0.05
 """How often the other process is looked at; cancelling takes no longer."""
 
+MISSED = 0.1
+"""A mesh with less than this share of the elements asked for did not see the field."""
+
 
 @dataclass(frozen=True)
 class GmshGenerator:
@@ -68,13 +71,19 @@ class GmshGenerator:
         MissingDependencyError
             If gmsh is not installed.
         MeshingError
-            If Gmsh fails, leaves triangles that cannot be merged, or would make more than ``options.max_elements``.
+            If Gmsh fails, leaves triangles that cannot be merged, would make more than ``options.max_elements``, or
+            passed the smallest sizes by: it looks at the field from its coarse side.
         Cancelled
             If the monitor says so; the other process is ended at once.
         """
-        _require_room(domain, size, options)
+        asked = _require_room(domain, size, options)
         found = self.answer(domain, size, options, monitor)
         quads = merged(found["points"], found["triangles"], found["quads"])
+        if len(quads) < MISSED * asked:
+            raise MeshingError(
+                f"gmsh made {len(quads):,} quadrilaterals where {size.label} asks for about {asked:,.0f}: it passed the "
+                "smallest sizes by; lower --mesh-scale, or try --mesher frontal"
+            )
         return _packed(domain, found["points"], quads, found["curve"])
 
     def answer(
@@ -117,13 +126,15 @@ class GmshGenerator:
         }
 
 
-def _require_room(domain: Domain, size: SizeField, options: MeshOptions) -> None:
+def _require_room(domain: Domain, size: SizeField, options: MeshOptions) -> float:
+    """Return about how many elements the field asks for, after a check that they are not too many."""
     asked = ideal_count(size, domain) / options.scale**2
     if asked > options.max_elements:
         raise MeshingError(
             f"{size.label}: at mesh scale {options.scale:g} it asks for about {asked:,.0f} elements, more than "
             f"{options.max_elements:,}; raise the sizes, --mesh-scale or --max-elements"
         )
+    return asked
 
 
 def _run(command: list[str], monitor: Monitor) -> None:

@@ -52,6 +52,14 @@ def test_the_field_sets_the_sizes() -> None:
     assert 3.0 < fine / coarse < 5.0
 
 
+def test_a_mesh_that_missed_the_field_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    # what Gmsh makes of a valley it does not see: a few elements as large as at the corners
+    coarse = GmshGenerator().answer(Domain.unit_square(), field(0.3, 0.3), MeshOptions(scale=1.0))
+    monkeypatch.setattr(GmshGenerator, "answer", lambda *_: coarse)
+    with pytest.raises(MeshingError, match="passed the smallest sizes by"):
+        GmshGenerator().generate(Domain.unit_square(), field(0.02, 0.1), MeshOptions(scale=1.0))
+
+
 def test_a_grid_gives_the_sizes_of_its_view() -> None:
     domain, options = Domain.unit_square(), MeshOptions(scale=1.0)
     counts = [GmshGenerator(structured=structured).generate(domain, field(), options).n_quads for structured in (0, 1)]
