@@ -81,8 +81,8 @@ class GmshGenerator:
         quads = merged(found["points"], found["triangles"], found["quads"])
         if len(quads) < MISSED * asked:
             raise MeshingError(
-                f"gmsh made {len(quads):,} quadrilaterals where {size.label} asks for about {asked:,.0f}: it passed the "
-                "smallest sizes by; lower --mesh-scale, or try --mesher frontal"
+                f"gmsh made {len(quads):,} quadrilaterals where {size.label} asks for about {asked:,.0f}: it passed "
+                "the smallest sizes by; lower --mesh-scale, or try --mesher frontal"
             )
         return _packed(domain, found["points"], quads, found["curve"])
 
