@@ -179,15 +179,12 @@ def guaranteed(
 
 
 def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
-    """Clean up and smooth; a mesh that is mostly lattice without the wide clean-up, which would spread its defects."""
+    """Clean up and smooth; a mesh that is mostly lattice, which has few irregular nodes, in fewer rounds."""
     work = Workspace(mesh, domain, tight, options)
     work.aim()
     sizes = np.sort(work.sizes)
-    same = np.diff(sizes) <= SAME * sizes[:-1]
-    # beside inner lines clean-up needs its rounds, and sizes that keep their nodes from sliding away
-    # beside inner lines clean-up needs its rounds, whatever the sizes
-    lattice = same.mean() >= LATTICE and not domain.lines
-    rounds = 0 if lattice else MORE_ROUNDS * options.rounds
+    lattice = (np.diff(sizes) <= SAME * sizes[:-1]).mean() >= LATTICE
+    rounds = options.rounds if lattice else MORE_ROUNDS * options.rounds
     return improve(mesh, domain, tight, replace(options, rounds=rounds), monitor)
 
 
