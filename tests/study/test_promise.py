@@ -36,7 +36,8 @@ def test_a_mesh_that_is_far_too_coarse_is_replaced() -> None:
 
 
 def test_a_mesh_that_can_be_repaired_is_kept() -> None:
-    field, domain = jump(), Domain.unit_square()
+    background, domain = BackgroundMesh.unit_square_grid(65, 65), Domain.unit_square()
+    field = SizeField(background, 0.03 + 0.1 * np.hypot(*(background.points - 0.5).T), "bowl")
     tight = tightened(field, preserved(field, PreserveOptions()))
     raw = generated(domain, tight, MeshOptions(scale=1.0))
     best = promised(domain, field, tight, raw)
