@@ -82,7 +82,9 @@ def _play_field() -> None:
 def _play_mesh() -> None:
     from sizeviz.meshing import MeshOptions, generated
 
-    generated(Domain.unit_square(), valley(), MeshOptions())
+    generated(Domain.unit_square(), valley(), MeshOptions(preset="fast"))
+    # so many nodes that they are packed in parts
+    generated(Domain.unit_square(), valley(), MeshOptions(scale=0.15))
 
 
 def _play_smooth() -> None:
