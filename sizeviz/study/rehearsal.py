@@ -84,7 +84,7 @@ def _play_mesh() -> None:
 
     generated(Domain.unit_square(), valley(), MeshOptions(preset="fast"))
     # so many nodes that they are packed in parts
-    generated(Domain.unit_square(), valley(), MeshOptions(scale=0.15))
+    generated(Domain.unit_square(), valley(), MeshOptions(scale=0.12))
 
 
 def _play_smooth() -> None:
