@@ -45,7 +45,7 @@ LOOKS = 4
 """Elements with R below CLOSE are judged again after every LOOKS sweeps only."""
 LATTICE = 0.5
 """Share of elements with sizes that others have too from which a mesh is taken for a lattice."""
-MORE_ROUNDS = 2
+MORE_ROUNDS = 3
 """Rounds of wide clean-up over those of plain meshes: fewer irregular nodes leave more room for the repair."""
 SAME = 1e-9
 """Relative difference up to which sizes are the same."""

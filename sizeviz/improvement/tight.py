@@ -182,7 +182,7 @@ def _grid_minima(field: SizeField, reach: NDArray[np.float64]) -> NDArray[np.flo
 def chosen(target: SizeField) -> tuple[float, float]:
     """Return the radius and factor that suit a field without ruling plateaus, by its mean slope."""
     asked = _asked(target)
-    return (2.0, 0.96) if float((_slopes(target) * asked).sum() / asked.sum()) > STEEP else (1.5, 0.96)
+    return (2.0, 0.958) if float((_slopes(target) * asked).sum() / asked.sum()) > STEEP else (1.5, 0.96)
 
 
 def _slopes(field: SizeField) -> NDArray[np.float64]:
