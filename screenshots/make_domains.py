@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sizeviz.conformity import judged, shape_quality
-from sizeviz.improvement import guaranteed, tightened
-from sizeviz.meshing import MeshOptions, generated
 from sizeviz.scene import Camera2D, Subject, ViewState, compose
 from sizeviz.scene.canvas import Canvas
 from sizeviz.scene.stage import Stage
-from sizeviz.sizing import BackgroundMesh, Grid, PreserveOptions, SizeField, ideal_count, preserved
-from sizeviz.sources import load
+from sizeviz.sizing import BackgroundMesh, Grid, SizeField
+from sizeviz.sources import Source, load
 from sizeviz.sources.shapes import shape
 from sizeviz.study import Study, run
 
@@ -27,8 +24,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 PANE, GAP, TEXT = 620, 28, 19
-FEWEST = 400
-"""Elements that a detail must show."""
+METHOD = "guaranteed"
 
 
 def main() -> None:
@@ -37,11 +33,11 @@ def main() -> None:
     _sheet("domains.png", domains, [subject.domain.bounds for subject in domains if subject.domain is not None])
     details, boxes = [], []
     for name, words, box in DETAILS:
-        study = run(Study(load(name)), ["guaranteed"])
-        made = study.runs["guaranteed"]
+        study = run(Study(load(name)), [METHOD])
+        made = study.runs[METHOD]
         count = "" if made.mesh is None else f"of {made.mesh.n_quads:,} quadrilaterals"
         details.append(Subject(words, count, made.mesh, made.report, domain=study.source.domain))
-        boxes.append(box or _liveliest(study))
+        boxes.append(box)
     _sheet("details.png", details, boxes)
 
 
@@ -50,14 +46,13 @@ def _meshed(name: str, words: str, sizes: Callable[[NDArray[np.float64]], NDArra
     domain = shape(name)
     background = BackgroundMesh.regular(_grid(domain))
     field = SizeField(background, sizes(background.points), name)
-    target = preserved(field, PreserveOptions())
-    tight = tightened(field, target)
-    raw = generated(domain, tight, MeshOptions(scale=1.0))
-    mesh, verdict = guaranteed(raw, domain, tight, field)
-    quality = shape_quality(mesh)
-    print(f"{name}: {verdict.verdict}; quality {quality.min():.3f} / {quality.mean():.3f}, "
-          f"{mesh.n_quads / ideal_count(target, domain):.2f} of the ideal count")  # fmt: skip
-    return Subject(words, f"{mesh.n_quads:,} quadrilaterals", mesh, judged(mesh, field), domain=domain)
+    made = run(Study(Source(name=name, label=words, domain=domain, field=field, reference=field)), [METHOD]).runs[
+        METHOD
+    ]
+    assert made.mesh is not None and made.report is not None and made.guarantee is not None
+    quality = made.report.quality
+    print(f"{name}: {made.guarantee.verdict}; quality {quality.min():.3f} / {quality.mean():.3f}")
+    return Subject(words, f"{made.mesh.n_quads:,} quadrilaterals", made.mesh, made.report, domain=domain)
 
 
 def _grid(domain: Domain) -> Grid:
@@ -77,8 +72,8 @@ def _sheet(name: str, subjects: list[Subject], boxes: list[tuple[float, float, f
             canvas.text(left, GAP + 2.3 * TEXT, subject.detail, TEXT, color=canvas.faint, anchor="ls")
             for row, quantity in enumerate(("ratio", "quality")):
                 view = ViewState(
-                    method="guaranteed", color_by=quantity, measure="max-edge", edges=True, range_mode="fixed",
-                    low=0.5 if quantity == "ratio" else 0.0, high=1.1 if quantity == "ratio" else 1.0,
+                    method=METHOD, color_by=quantity, measure="max-edge", edges=True, range_mode="fixed",
+                    low=0.3 if quantity == "ratio" else 0.0, high=1.1 if quantity == "ratio" else 1.0,
                 )  # fmt: skip
                 spec = compose(subject, view)
                 pixels = stage.shoot(spec, Camera2D.fitted(box, 1.0, 1.02), PANE, PANE)
@@ -89,24 +84,6 @@ def _sheet(name: str, subjects: list[Subject], boxes: list[tuple[float, float, f
                     canvas.bar(spec.scale, (begin, foot, begin + PANE, foot + round(0.8 * TEXT)), TEXT)
     canvas.save(HERE / name)
     print(name)
-
-
-def _liveliest(study: Study, side: float = 0.08) -> tuple[float, float, float, float]:
-    """Return the square of the domain in which element sizes vary most."""
-    mesh = study.runs["guaranteed"].mesh
-    assert mesh is not None
-    centre, log_area = mesh.points[mesh.quads].mean(axis=1), np.log(mesh.areas)
-    x0, y0, x1, y1 = study.source.domain.bounds
-    cells = [np.minimum(((c - low) / side).astype(int), n - 1) for c, low, n in
-             ((centre[:, 0], x0, int((x1 - x0) / side)), (centre[:, 1], y0, int((y1 - y0) / side)))]  # fmt: skip
-    number = cells[0] * 1000 + cells[1]
-    names, which = np.unique(number, return_inverse=True)
-    count = np.bincount(which)
-    mean = np.bincount(which, log_area) / count
-    spread = np.bincount(which, (log_area - mean[which]) ** 2) / count
-    best = names[np.argmax(np.where(count > FEWEST, spread, 0.0))]
-    column, row = divmod(int(best), 1000)
-    return x0 + column * side, y0 + row * side, x0 + (column + 1) * side, y0 + (row + 1) * side
 
 
 def _near(points: NDArray[np.float64], x: float, y: float) -> NDArray[np.float64]:
@@ -123,9 +100,9 @@ CASES = (
 
 DETAILS = (
     ("ring", "The ring's crest", (0.7515, 0.494, 0.7635, 0.506)),
-    ("mri", "A detail of the MRI slice", None),
+    ("mri", "A detail of the MRI slice", (0.675, 0.095, 0.715, 0.135)),
 )
-"""Example, title and the box shown, by default the liveliest."""
+"""Example, title and the box shown."""
 
 
 if __name__ == "__main__":

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from sizeviz.geometry import Domain, QuadMesh
     from sizeviz.sizing import SizeField, SizeFunction
 
-FINER: tuple[tuple[float, float], ...] = ((0.9, 0.7), (0.8, 0.5))
-"""Share of the tight field's sizes, and the slope that they may have, of the second and the third mesh."""
+FINER: tuple[tuple[float, float], ...] = ((0.9, 0.7), (0.8, 0.5), (0.7, 0.35))
+"""Share of the tight field's sizes, and the slope that they may have, of the second mesh and those after it."""
 HOPELESS = 0.1
 """Share of wrong elements from which a mesh that is not the last is not repaired."""
 HELD = "with an edge between two fixed nodes"
@@ -91,7 +91,7 @@ def promised(
     for n, (share, slope) in enumerate(FINER):
         if best.report.holds or set(best.report.reasons) == {HELD}:
             break
-        part = SubMonitor(monitor, 0.6 + 0.2 * n, 0.8 + 0.2 * n)
+        part = SubMonitor(monitor, 0.6 + 0.4 * n / len(FINER), 0.6 + 0.4 * (n + 1) / len(FINER))
         last = n == len(FINER) - 1
         finer = limited(tight.with_sizes(share * tight.sizes), LimitOptions(epsilon=slope))
         try:

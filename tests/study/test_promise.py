@@ -10,7 +10,8 @@ from sizeviz.errors import InputError
 from sizeviz.geometry import Domain
 from sizeviz.improvement import GuaranteeOptions, guaranteed, tightened
 from sizeviz.meshing import MeshOptions, generated
-from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, preserved
+from sizeviz.sizing import BackgroundMesh, Grid, PreserveOptions, SizeField, preserved
+from sizeviz.sources.shapes import shape
 from sizeviz.study.promise import promised
 
 
@@ -63,3 +64,15 @@ def test_a_hopeless_mesh_is_not_repaired() -> None:
     assert len(report.elements) > 0.01 * mesh.n_quads
     with pytest.raises(InputError, match="hopeless"):
         GuaranteeOptions(hopeless=0.0)
+
+
+def test_a_gap_far_narrower_than_the_sizes_is_meshed_finely_enough() -> None:
+    # two elements at its mouth were still a hundredth too long in a mesh of 0.8 of the sizes
+    domain = shape("eccentric")
+    x0, y0, x1, y1 = domain.bounds
+    grid = Grid(x0, y0, (x1 - x0) / 200, (y1 - y0) / 200, 201, 201)
+    field = SizeField(BackgroundMesh.regular(grid), np.full(201 * 201, 0.06), "even")
+    tight = tightened(field, preserved(field, PreserveOptions()))
+    best = promised(domain, field, tight, generated(domain, tight, MeshOptions(scale=1.0)))
+    assert best.report.holds
+    assert judged(best.mesh, field).correct_percent["max-edge"] == 100.0
