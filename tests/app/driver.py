@@ -105,6 +105,8 @@ class Person:
         QApplication.sendEvent(glass, event)
 
     def key(self, key: Qt.Key, keys=Qt.KeyboardModifier.NoModifier) -> None:
+        self.window.activateWindow()
+        QTest.qWaitForWindowActive(self.window, 2000)
         QTest.keyClick(self.window, key, keys)
 
     def type_number(self, spin, value: str) -> None:
