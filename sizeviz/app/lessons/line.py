@@ -6,7 +6,7 @@ Ruiz-Gironés, Roca, Sarrate, 22nd International Meshing Roundtable, 2013, DOI 1
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -118,10 +118,10 @@ class LineLesson:
             return self
         return self._with_knots((*self.knots[:index], *self.knots[index + 1 :]))
 
-    def with_changes(self, **changes: float) -> LineLesson:
+    def with_changes(self, **changes: Any) -> LineLesson:
         """Return the lesson with other parameters; the ball starts anew where it would be another ball."""
-        restart = {} if set(changes) <= {"step", "epsilon", "chapter"} else {"step": 0}
-        return replace(self, **{**restart, **changes})  # type: ignore[arg-type]
+        lesson = self if set(changes) <= {"step", "epsilon", "chapter"} else replace(self, step=0)
+        return replace(lesson, **changes)
 
     def _with_knots(self, knots: tuple[Knot, ...]) -> LineLesson:
         return replace(self, knots=knots, step=0)
