@@ -1,4 +1,5 @@
-"""Tiers, and what they need: plain tests need nothing; `gl` draws off-screen; `display` opens windows; `gmsh` meshes.
+"""Tiers, and what they need: plain tests need nothing; `gl` draws off-screen; `display` opens windows; `gmsh` meshes;
+`browser` opens pages.
 
 A test whose tier is not there is skipped; under CI nothing may be missing, so there every skip is a failure.
 """
@@ -7,6 +8,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 from functools import cache
@@ -43,11 +45,26 @@ def has_gmsh() -> bool:
     return importlib.util.find_spec("gmsh") is not None
 
 
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def has_browser() -> bool:
+    return BROWSER is not None
+
+
 TIERS = {
     "gl": (has_gl, "no off-screen OpenGL; install libegl1 libgl1-mesa-dri"),
     "display": (has_display, "no display; install xvfb"),
     "gmsh": (has_gmsh, "no gmsh; pip install 'sizeviz[gmsh]'"),
+    "browser": (has_browser, "no browser; install chromium"),
 }
+
+
+@pytest.fixture
+def browser() -> str:
+    """Return what starts the browser; only for tests marked with it."""
+    assert BROWSER is not None
+    return BROWSER
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
