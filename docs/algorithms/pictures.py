@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sizeviz.scene.paper_figures import COLORS, FAINT, INK, sheet, title
+from sizeviz.scene.figures.sheet import COLORS, FAINT, INK, sheet, title
 from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, preserved
 
 if TYPE_CHECKING:

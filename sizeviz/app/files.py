@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sizeviz.monitor import Monitor
     from sizeviz.study import Study
     from sizeviz.study.storage import StudyFile
-    from sizeviz.study.storage_autosave import Autosave, Leftover
+    from sizeviz.study.storage.autosave import Autosave, Leftover
 
 AUTOSAVE_MS = 3000
 """How long after a change the study is autosaved; further changes meanwhile do not put it off."""
@@ -130,7 +130,7 @@ class StudyFiles(QObject):
         """Return the studies that can be recovered, the newest first."""
         if not any(self._folder.glob("*.sizeviz")):
             return []  # the usual case, found out without loading anything
-        from sizeviz.study.storage_autosave import leftovers
+        from sizeviz.study.storage.autosave import leftovers
 
         try:
             return leftovers(self._folder)
@@ -227,7 +227,7 @@ class StudyFiles(QObject):
         self.view_restored.emit(dict(content.view))
 
     def _write(self, content: StudyFile) -> None:
-        from sizeviz.study.storage_autosave import Autosave
+        from sizeviz.study.storage.autosave import Autosave
 
         if self._autosave is None:
             self._autosave = Autosave(self._folder)

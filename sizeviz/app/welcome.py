@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from sizeviz.app.engine import Example
-    from sizeviz.study.storage_autosave import Leftover
+    from sizeviz.study.storage.autosave import Leftover
 
 CARD = QSize(124, 124)
 

@@ -54,7 +54,7 @@ def adapt(
     """
     from sizeviz.cli.options import loaded, study_options
     from sizeviz.cli.terminal import progress, warn_about_beta
-    from sizeviz.scene.paper_figures import save_evolution
+    from sizeviz.scene.figures.sheet import save_evolution
     from sizeviz.study.adaptive import AdaptOptions, adapted
 
     options, process = options or PipelineOptions(), process or ProcessOptions()

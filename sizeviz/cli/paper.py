@@ -60,7 +60,7 @@ def paper(*, out: OutArgument, choices: Choices | None = None) -> None:
 def _carried_out(options: PaperOptions, folder: Path, monitor: Monitor) -> None:
     from sizeviz.files import replacing
     from sizeviz.monitor import SubMonitor
-    from sizeviz.scene.paper_figures_all import save_figures
+    from sizeviz.scene.figures.paper import save_figures
     from sizeviz.study.paper import adaptations, image_runs, image_table, line_example, ring_table
     from sizeviz.study.paper.summary import summary
 

@@ -12,8 +12,8 @@ import numpy as np
 from sizeviz.errors import InputError
 from sizeviz.files import read_mesh
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.scene.figures.sheet import COLORS
 from sizeviz.scene.film import Curve, Film, Take
-from sizeviz.scene.paper_figures import COLORS
 from sizeviz.scene.subject import METHOD_TITLES, StoredSubject
 from sizeviz.scene.view import ViewState
 from sizeviz.study.evolution import Iteration, read_evolution

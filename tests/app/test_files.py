@@ -14,7 +14,7 @@ from sizeviz.files import read_field
 from sizeviz.sources.painting import Brush, painted
 from sizeviz.study import Study
 from sizeviz.study.storage import StudyFile, read_study, write_study
-from sizeviz.study.storage_autosave import leftovers
+from sizeviz.study.storage.autosave import leftovers
 
 
 def paint(controller, x: float = 0.3, size: float = 0.004) -> None:

@@ -19,7 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from sizeviz.study.storage import read_study
-from sizeviz.study.storage_autosave import leftovers
+from sizeviz.study.storage.autosave import leftovers
 
 NURSERY = """
 import os, sys
@@ -27,7 +27,7 @@ from dataclasses import replace
 from study.cases import valley_source
 from sizeviz.study import Study
 from sizeviz.study.storage import StudyFile, write_study
-from sizeviz.study.storage_autosave import Autosave
+from sizeviz.study.storage.autosave import Autosave
 path, folder = sys.argv[1:]
 source = valley_source(129)
 

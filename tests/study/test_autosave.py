@@ -13,7 +13,7 @@ from study.killed_saves import killed
 from sizeviz.errors import InputError
 from sizeviz.study import Study
 from sizeviz.study.storage import StudyFile, write_study
-from sizeviz.study.storage_autosave import Autosave, leftovers
+from sizeviz.study.storage.autosave import Autosave, leftovers
 
 
 def content() -> StudyFile:

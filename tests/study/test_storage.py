@@ -26,9 +26,8 @@ from sizeviz.sizing import BackgroundMesh, LimitOptions, PreserveOptions, SizeFi
 from sizeviz.sizing.analytic import AnalyticSize
 from sizeviz.sources import Source, load
 from sizeviz.sources.painting import Brush, Stroke, painted
-from sizeviz.study import METHODS, MethodRun, Study, StudyOptions, storage_archive
-from sizeviz.study import storage_schema as schema
-from sizeviz.study.storage import StudyFile, read_study, write_study
+from sizeviz.study import METHODS, MethodRun, Study, StudyOptions
+from sizeviz.study.storage import StudyFile, read_study, schema, write_study
 
 
 @pytest.fixture(scope="module")
@@ -355,7 +354,7 @@ def test_pickled_objects_are_never_loaded(tmp_path: Path) -> None:
 
 def test_archive_bombs_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_study(tmp_path / "a.sizeviz", StudyFile(Study(valley_source(5))))
-    monkeypatch.setattr(storage_archive, "MAX_BYTES", 2**24)
+    monkeypatch.setattr("sizeviz.study.storage.archive.MAX_BYTES", 2**24)
     assert isinstance(read_study(path), StudyFile)
     with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
         for k in range(100, 117):

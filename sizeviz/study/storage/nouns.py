@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from sizeviz.sizing.analytic import SizeFunction
-    from sizeviz.study.storage_archive import ArrayReader, ArrayWriter
-    from sizeviz.study.storage_schema import (
+    from sizeviz.study.storage.archive import ArrayReader, ArrayWriter
+    from sizeviz.study.storage.schema import (
         BackgroundText,
         DomainText,
         FieldText,

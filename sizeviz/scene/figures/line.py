@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sizeviz.scene.paper_figures import COLORS, FAINT, INK, WORDS, save, sheet, title
+from sizeviz.scene.figures.sheet import COLORS, FAINT, INK, WORDS, save, sheet, title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

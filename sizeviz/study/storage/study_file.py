@@ -21,9 +21,9 @@ from sizeviz.sources import load as load_source
 from sizeviz.sources.painting import Brush, Stroke
 from sizeviz.study.options import StudyOptions
 from sizeviz.study.report import versions
-from sizeviz.study.storage_archive import ArrayWriter, read_archive, write_archive
-from sizeviz.study.storage_nouns import FLOATS, Packer, Unpacker
-from sizeviz.study.storage_schema import FORMAT, VERSION, SourceText, StudyText, dataclass_of, validated
+from sizeviz.study.storage.archive import ArrayWriter, read_archive, write_archive
+from sizeviz.study.storage.nouns import FLOATS, Packer, Unpacker
+from sizeviz.study.storage.schema import FORMAT, VERSION, SourceText, StudyText, dataclass_of, validated
 from sizeviz.study.study import Study
 
 if TYPE_CHECKING:

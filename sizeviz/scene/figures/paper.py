@@ -6,8 +6,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from sizeviz.monitor import SILENT, Monitor
-from sizeviz.scene.paper_figures_line import save_line_figures
-from sizeviz.scene.paper_figures_meshes import (
+from sizeviz.scene.figures.line import save_line_figures
+from sizeviz.scene.figures.meshes import (
     error_norms,
     image_scales,
     save_adaptation,

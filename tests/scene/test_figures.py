@@ -11,9 +11,9 @@ from PIL import Image as Picture
 from sizeviz.files import Image
 from sizeviz.geometry import Domain
 from sizeviz.meshing import MeshOptions
-from sizeviz.scene.paper_figures import COLORS, Published, draw_evolution, inside, painted_cells, save_evolution, sheet
-from sizeviz.scene.paper_figures_all import save_figures
-from sizeviz.scene.paper_figures_meshes import image_errors
+from sizeviz.scene.figures.meshes import image_errors
+from sizeviz.scene.figures.paper import save_figures
+from sizeviz.scene.figures.sheet import COLORS, Published, draw_evolution, inside, painted_cells, save_evolution, sheet
 from sizeviz.sizing import BackgroundMesh, SizeField
 from sizeviz.sources import Source
 from sizeviz.study import COMPARED, Study, StudyOptions, run

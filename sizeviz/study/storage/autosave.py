@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 from sizeviz.errors import InputError
 from sizeviz.files.atomic import write_error
-from sizeviz.study.storage import SUFFIX, StudyFile, read_study, write_study
+from sizeviz.study.storage.study_file import SUFFIX, StudyFile, read_study, write_study
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sizeviz.scene.colormaps import color_map
-from sizeviz.scene.imaging import interpolation_errors
-from sizeviz.scene.paper_figures import (
+from sizeviz.scene.figures.sheet import (
     COLORS,
     WORDS,
     Published,
@@ -20,6 +19,7 @@ from sizeviz.scene.paper_figures import (
     sheet,
     title,
 )
+from sizeviz.scene.imaging import interpolation_errors
 from sizeviz.scene.scale import ColorScale, ratio_scale
 from sizeviz.study.paper.published import PUBLISHED
 
