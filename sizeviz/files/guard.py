@@ -154,5 +154,10 @@ def inflated(data: bytes, limit: int, wbits: int = zlib.MAX_WBITS) -> bytes:
     return content
 
 
+def started(data: bytes, count: int, wbits: int = zlib.MAX_WBITS) -> bytes:
+    """Return the first ``count`` bytes of zlib (or with ``wbits=31`` gzip) data, or as many as there are."""
+    return zlib.decompressobj(wbits).decompress(data, count)
+
+
 def _mib(count: int) -> str:
     return f"{count} bytes" if count < 2**20 else f"{count / 2**20:.0f} MiB"

@@ -10,7 +10,7 @@ import numpy as np
 
 from sizeviz.errors import InputError, MissingDependencyError
 from sizeviz.files.convert import luminance, sliced
-from sizeviz.files.guard import MAX_BYTES, MAX_PIXELS, check_available, check_nodes, inflated, one_line, quiet
+from sizeviz.files.guard import MAX_BYTES, MAX_PIXELS, check_available, check_nodes, inflated, one_line, quiet, started
 from sizeviz.files.image import Image
 from sizeviz.files.raw import RawGrid
 
@@ -22,6 +22,12 @@ if TYPE_CHECKING:
     from sizeviz.files.options import ReadOptions
 
 _DEFLATED = b"1.2.840.10008.1.2.1.99"
+
+_HEADER = 544
+"""Bytes of the longer of the two headers of NIfTI, with what says whether extensions follow."""
+
+_SURPLUS = 2**20
+"""Bytes that may follow the voxels of a packed file; a file that goes on is not unpacked to its end."""
 
 
 def parse_nifti(data: bytes, path: Path, options: ReadOptions) -> Image:
@@ -37,13 +43,19 @@ def parse_nifti(data: bytes, path: Path, options: ReadOptions) -> Image:
         If nibabel is not installed.
     """
     nibabel = _needed("nibabel")
-    if data[:2] == b"\x1f\x8b":
-        data = inflated(data, MAX_BYTES, wbits=31)
-    volume = nibabel.Nifti2Image if data[:4] in (b"\x1c\x02\0\0", b"\0\0\x02\x1c") else nibabel.Nifti1Image
+    packed = data[:2] == b"\x1f\x8b"
+    start = started(data, _HEADER, wbits=31) if packed else data
+    volume = nibabel.Nifti2Image if start[:4] in (b"\x1c\x02\0\0", b"\0\0\x02\x1c") else nibabel.Nifti1Image
     with quiet("nibabel.global"):
-        header = volume.header_class.from_fileobj(io.BytesIO(data))
+        header = volume.header_class.from_fileobj(io.BytesIO(start))
         shape = tuple(int(n) for n in header.get_data_shape())
-        _check_volume(shape, len(data), int(header["vox_offset"]), header.get_data_dtype())
+        offset = max(int(header["vox_offset"]), 0)
+        needed = _volume_bytes(shape, header.get_data_dtype())
+        what = f"its {' x '.join(map(str, shape))} voxels"
+        if packed:
+            check_available(needed + offset, MAX_BYTES, what)
+            data = inflated(data, needed + offset + _SURPLUS, wbits=31)
+        check_available(needed, len(data) - offset, what)
         image = volume.from_bytes(data)
         values = _at_time(image.dataobj, shape, options)
     zooms = [float(z) for z in header.get_zooms()[:3]] + [1.0] * 3
@@ -95,17 +107,18 @@ def _needed(module: str) -> Any:
         ) from error
 
 
-def _check_volume(shape: tuple[int, ...], available: int, offset: int, dtype: np.dtype[Any]) -> None:
+def _volume_bytes(shape: tuple[int, ...], dtype: np.dtype[Any]) -> int:
+    """Return how many bytes the voxels take; whether they can be shown is checked."""
     if len(shape) < 2 or any(n < 1 for n in shape):
         raise InputError(f"its shape is {shape}; an image of two or three dimensions is needed")
     if (len(shape) > 4 and max(shape[4:]) > 1) or dtype.names or dtype.kind not in "biuf":
         raise InputError(
             f"it holds vectors, tensors or colours (shape {shape}, {dtype}); one number a voxel is supported"
         )
-    needed = dtype.itemsize
+    needed = int(dtype.itemsize)
     for n in shape:
         needed *= n
-    check_available(needed, available - max(offset, 0), f"its {' x '.join(map(str, shape))} voxels")
+    return needed
 
 
 def _at_time(stored: Any, shape: tuple[int, ...], options: ReadOptions) -> NDArray[Any]:

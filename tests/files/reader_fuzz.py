@@ -28,6 +28,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
 from files.reader_seeds import FORMULAS, Seed, seeds
+from files.reader_structures import STRUCTURAL
 
 from sizeviz.errors import InputError
 from sizeviz.files import registry
@@ -44,6 +45,9 @@ SECONDS = 5.0
 
 MEMORY = 2 * 2**30
 """A case that asks for more memory than this blows up."""
+
+STRUCTURED = 0.4
+"""Share of the cases whose damage keeps the file's structure; in the others bytes are damaged."""
 
 NUMBER = re.compile(rb"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 ODD_NUMBERS = [
@@ -174,14 +178,19 @@ def cases(count: int, seed: int) -> Iterator[tuple[int, str, str, bytes, bytes |
     for number in range(count):
         draw = random.Random(f"{seed} {number}")
         if draw.random() < 0.08:
-            text = mutated(draw.choice(formulas), draw.choice(formulas), draw)
+            text = draw.choice(formulas)
+            odd = draw.random() < STRUCTURED
+            text = STRUCTURAL["formula"](text, draw) if odd else mutated(text, draw.choice(formulas), draw)
             yield number, "formula", "", text[:5000], None
             continue
         same = pool[draw.choice(list(pool))]
         taken: Seed = draw.choice(same)
         table = draw.choice([name for name, readers in TABLES.items() if taken.suffix in readers])
-        damaged = mutated(taken.data, draw.choice(same).data, draw)
-        if taken.suffix == ".sizeviz" and draw.random() < 0.7:
+        if draw.random() < STRUCTURED:
+            damaged = STRUCTURAL[taken.suffix](taken.data, draw)
+        else:
+            damaged = mutated(taken.data, draw.choice(same).data, draw)
+        if taken.suffix == ".sizeviz" and draw.random() < 0.5:
             damaged = with_damaged_member(taken.data, draw)
         beside = taken.beside
         if beside is not None and draw.random() < 0.3:
@@ -228,7 +237,7 @@ def tried(table: str, suffix: str, data: bytes, beside: bytes | None, folder: Pa
 
 def judged_message(text: str, reader: str, table: str, suffix: str) -> Outcome:
     """Say whether an error is one line that names the input."""
-    if "\n" in text or len(text) > 1000 or not text.isprintable():
+    if "\n" in text or len(text) > 700 or not text.isprintable():
         return Outcome("bad message", reader, repr(text))
     if table != "formula" and f"case{suffix}" not in text:
         return Outcome("bad message", reader, f"does not name the file: {text}")

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from files.reader_fuzz import TABLES, Outcome, cases, on_alarm, run, timed, tried
 from files.reader_seeds import seeds
+from files.reader_structures import STRUCTURAL
 
 CASES = 300
 
@@ -24,6 +25,10 @@ def test_every_sound_seed_is_read(tmp_path: Path) -> None:
 def test_every_reader_has_a_seed() -> None:
     known = {suffix for readers in TABLES.values() for suffix in readers} - {".jpeg", ".tiff"}
     assert known == {seed.suffix for seed in seeds()}
+
+
+def test_the_structure_of_every_kind_of_file_is_damaged() -> None:
+    assert set(STRUCTURAL) == {seed.suffix for seed in seeds()} | {"formula"}
 
 
 @pytest.mark.parametrize("share", range(3))

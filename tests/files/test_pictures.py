@@ -142,6 +142,17 @@ def test_scaled_values_and_frames_of_a_nifti_series(tmp_path: Path) -> None:
     assert np.array_equal(read_image(tmp_path / "s.nii").values, VOLUME[:, :, 1].T * 0.5 - 10.0)
 
 
+def test_a_packed_nifti_is_unpacked_only_as_far_as_its_header_says(tmp_path: Path) -> None:
+    (tmp_path / "i.nii.gz").write_bytes(gzip.compress(nifti_bytes(VOLUME, (1.0, 1.0, 1.0)) + bytes(2**24)))
+    with pytest.raises(InputError, match="it unpacks to more than 1 MiB"):
+        read_image(tmp_path / "i.nii.gz")
+    damaged = bytearray(nifti_bytes(VOLUME, (1.0, 1.0, 1.0)))
+    damaged[42:48] = np.array([32767, 32767, 3], "<i2").tobytes()
+    (tmp_path / "i.nii.gz").write_bytes(gzip.compress(damaged))
+    with pytest.raises(InputError, match="32767 x 32767 x 3 voxels should take"):
+        read_image(tmp_path / "i.nii.gz")
+
+
 def test_nifti_vectors_and_lies_are_refused(tmp_path: Path) -> None:
     (tmp_path / "v.nii").write_bytes(nifti_bytes(np.ones((3, 3, 3, 1, 3), np.float32), (1.0,) * 5))
     with pytest.raises(InputError, match=r"vectors, tensors or colours.*one number a voxel is supported"):
