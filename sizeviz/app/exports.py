@@ -2,29 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from qtpy.QtWidgets import QFileDialog
 
+from sizeviz.app.films import FilmDialog, Turn, ask_place, film_process, film_study
 from sizeviz.app.jobs import Job
 from sizeviz.app.news import Notice
-from sizeviz.errors import Cancelled, InputError
-from sizeviz.progress_lines import ENVIRONMENT, parsed_line
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from sizeviz.app.window import MainWindow
     from sizeviz.monitor import Monitor
-    from sizeviz.study.storage import StudyFile
-
-TAKES = 24
-"""How many α a film shows."""
 
 
 def save_page(window: MainWindow, path: str | None = None) -> None:
@@ -35,7 +24,7 @@ def save_page(window: MainWindow, path: str | None = None) -> None:
     if not panes:
         window.controller.noticed.emit(Notice("info", "There is no mesh to save yet"))
         return
-    path = path or _ask(window, "Save an interactive page", "compare.html", "Pages (*.html)")
+    path = path or QFileDialog.getSaveFileName(window, "Save an interactive page", "compare.html", "Pages (*.html)")[0]
     if not path:
         return
     subjects = {pane.view.method: pane.subject for pane in panes}
@@ -43,74 +32,42 @@ def save_page(window: MainWindow, path: str | None = None) -> None:
     views = [pane.view.with_changes(method=str(names.index(pane.view.method))) for pane in panes]
     study, dark = window.controller.study, window.theme.dark
     title, measure = study.source.label if study is not None else "sizeviz", window.board.active.view.measure
+    target = Path(path)
 
     def work(monitor: Monitor) -> None:
         monitor.step(0.0, "writing the page")
-        save(list(subjects.values()), path, panes=views, measure=measure, title=title, dark=dark)
-
-    _submit(window, Path(path), work)
-
-
-def save_film(window: MainWindow, path: str | None = None) -> None:
-    """Save a film of the study's methods while α turns; asks for the place if none is given."""
-    if window.controller.study is None:
-        return
-    path = path or _ask(window, "Save a film of a turning α", "alpha.mp4", "Films (*.mp4 *.gif)")
-    if not path:
-        return
-    content, dark = window.files.content(), window.theme.dark
-    target = Path(path).resolve()
-    _submit(window, target, lambda monitor: _filmed(content, target, dark, monitor))
-
-
-def _submit(window: MainWindow, path: Path, work: Callable[[Monitor], None]) -> None:
-    """Hand the work to the window's worker, with its progress and its Cancel."""
+        save(list(subjects.values()), target, panes=views, measure=measure, title=title, dark=dark)
 
     def done(_: object) -> None:
-        window.controller.noticed.emit(Notice("info", f"Saved {path.name}"))
+        window.controller.noticed.emit(Notice("info", f"Saved {target.name}"))
 
-    window.controller.jobs.submit(Job(f"saving {path.name}", work, done))
-
-
-def _filmed(content: StudyFile, path: Path, dark: bool, monitor: Monitor) -> None:
-    """Let the command line make the film in a process of its own, for VTK belongs to the window's thread in this one.
-
-    Raises
-    ------
-    InputError
-        With the line that the command line said.
-    Cancelled
-        If the monitor says so; nothing is left.
-    """
-    from sizeviz.study.storage import StudyFile, write_study
-    from sizeviz.study.study import Study
-
-    monitor.step(0.0, "filming")
-    with tempfile.TemporaryDirectory() as folder:
-        bare = Study(content.study.source, content.study.options)  # every α is run anew
-        study = write_study(Path(folder) / "study.sizeviz", StudyFile(bare))
-        command = [sys.executable, "-m", "sizeviz", "film", str(study), "-o", str(path), "--takes", str(TAKES)]
-        environment = {**os.environ, ENVIRONMENT: "1"}
-        said = ""
-        with subprocess.Popen(
-            [*command, "--dark"] if dark else command,
-            stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=environment,
-        ) as child:  # fmt: skip
-            assert child.stderr is not None
-            try:
-                for line in child.stderr:
-                    step = parsed_line(line)
-                    if step is not None:
-                        monitor.step(*step)
-                    elif line.strip():
-                        said = line.strip().removeprefix("sizeviz: ")
-            except Cancelled:
-                child.terminate()
-                raise
-        if child.returncode:
-            raise InputError(said or f"{path}: the film could not be made")
+    window.controller.jobs.submit(Job(f"saving {target.name}", work, done))
 
 
-def _ask(window: MainWindow, title: str, name: str, kinds: str) -> str:
-    path, _ = QFileDialog.getSaveFileName(window, title, name, kinds)
-    return str(path)
+def ask_film(window: MainWindow) -> None:
+    """Ask what a film of a turning α shows and where it goes, then have it made."""
+    if window.controller.study is None:
+        return
+    dialog = FilmDialog(Turn(), window)
+    dialog.accepted.connect(lambda: save_film(window, dialog.turn))
+    dialog.finished.connect(dialog.deleteLater)
+    dialog.open()
+
+
+def save_film(window: MainWindow, turn: Turn, path: str | None = None) -> None:
+    """Have a film made of the study's methods while α turns; asks for the place if none is given."""
+    path = path or ask_place(window, "Save a film of a turning α", "alpha")
+    if path:
+        typed = [*turn.as_typed(), "--measure", window.board.active.view.measure, *_ground(window)]
+        film_study(window.controller, window.files.content(), Path(path).resolve(), typed)
+
+
+def save_process_film(window: MainWindow, folder: Path, path: str | None = None) -> None:
+    """Have a film made of an adaptive process, iteration by iteration; asks for the place if none is given."""
+    path = path or ask_place(window, "Save a film of the iterations", "adapted")
+    if path:
+        film_process(window.controller, folder, Path(path).resolve(), _ground(window))
+
+
+def _ground(window: MainWindow) -> list[str]:
+    return ["--dark"] if window.theme.dark else []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QApplication, QFileDialog
 
-from sizeviz.app.exports import save_film, save_page
+from sizeviz.app.exports import ask_film, save_page
 from sizeviz.app.feedback import About
 from sizeviz.app.news import Notice
 from sizeviz.app.panes.board import Selection
@@ -76,7 +76,7 @@ def connect_actions(window: MainWindow) -> None:
     on("save-picture", lambda: save_picture(window))
     on("save-comparison", lambda: save_comparison(window))
     on("save-page", lambda: save_page(window))
-    on("save-film", lambda: save_film(window))
+    on("save-film", lambda: ask_film(window))
     on("quit", window.close)
     on("undo", controller.undo)
     on("redo", controller.redo)

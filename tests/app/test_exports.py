@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
+from app.test_process_player import pretend
 from PIL import Image
 
-from sizeviz.app import exports
+from sizeviz.app import exports, films
+from sizeviz.app.films import FilmDialog, Turn
 from sizeviz.progress_lines import LineMonitor, parsed_line
 
 pytestmark = pytest.mark.display
@@ -28,8 +33,7 @@ def test_a_page_that_cannot_be_written_is_an_error_and_the_window_lives(qtbot, o
 
 @pytest.mark.gl
 @pytest.mark.slow
-def test_a_turning_alpha_becomes_a_film_with_progress(qtbot, opened, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(exports, "TAKES", 2)
+def test_a_turning_alpha_becomes_a_film_with_progress(qtbot, opened, tmp_path) -> None:
     source = opened.controller.study.source
     coarse = source.field.with_sizes(source.field.sizes.clip(0.08))
     opened.controller.automatic = False
@@ -37,16 +41,66 @@ def test_a_turning_alpha_becomes_a_film_with_progress(qtbot, opened, tmp_path, m
     seen = []
     opened.controller.jobs.progressed.connect(lambda *state: seen.append(state))
     with qtbot.waitSignal(opened.controller.jobs.completed, timeout=400_000):
-        exports.save_film(opened, str(tmp_path / "a.gif"))
+        exports.save_film(opened, Turn(takes=2, width=640), str(tmp_path / "a.gif"))
     with Image.open(tmp_path / "a.gif") as film:
-        assert film.n_frames == 2
+        assert film.n_frames == 2 and film.width == 640
     assert any("filming" in words for _, words, _ in seen)
 
 
+def test_the_dialog_asks_what_turns(qtbot, opened, monkeypatch) -> None:
+    asked = []
+    monkeypatch.setattr(exports, "save_film", lambda window, turn: asked.append(turn))
+    opened.actions_["save-film"].trigger()
+    dialog = opened.findChild(FilmDialog)
+    dialog.first.setValue(2.0)
+    dialog.takes.setValue(12)
+    assert "12 runs of the pipeline" in dialog.words.text() and "3 s of film" in dialog.words.text()
+    dialog.accept()
+    assert asked == [Turn(first=2.0, takes=12)]
+    assert asked[0].as_typed() == ["--first", "2", "--last", "6", "--takes", "12", "--width", "1280"]
+
+
+@pytest.mark.gl
+def test_iterations_become_a_film_from_the_player(qtbot, flat_window, tmp_path, monkeypatch) -> None:
+    (tmp_path / "p").mkdir()
+    pretend(tmp_path / "p", last=1)
+    flat_window.lessons.open_process()
+    page = flat_window.lessons.process_page
+    assert not page.film_button.isEnabled()
+    jobs = flat_window.controller.jobs
+    with qtbot.waitSignal(jobs.idle, timeout=20_000):
+        page.open_folder(tmp_path / "p")
+    monkeypatch.setattr(exports, "ask_place", lambda *_: str(tmp_path / "i.gif"))
+    with qtbot.waitSignal(jobs.completed, timeout=200_000):
+        page.film_button.click()
+    with Image.open(tmp_path / "i.gif") as film:
+        assert film.n_frames == 2
+    assert "Saved i.gif" in flat_window.toast.text.text()
+
+
+def test_cancel_ends_a_film_at_once_and_leaves_nothing(qtbot, opened, tmp_path, monkeypatch) -> None:
+    """The process that makes it is silent here, as one inside a long step is."""
+    (tmp_path / "a.gif").write_bytes(b"the old one")
+    started = tmp_path / "started"
+    silent = f"import time, pathlib; pathlib.Path({str(started)!r}).touch(); time.sleep(60)"
+    popen = subprocess.Popen
+    monkeypatch.setattr(
+        films.subprocess, "Popen", lambda command, **kept: popen([sys.executable, "-c", silent], **kept)
+    )
+    jobs = opened.controller.jobs
+    exports.save_film(opened, Turn(), str(tmp_path / "a.gif"))
+    qtbot.waitUntil(started.exists, timeout=20_000)
+    with qtbot.waitSignal(jobs.cancelled, timeout=1000):
+        jobs.cancel()
+    assert (tmp_path / "a.gif").read_bytes() == b"the old one"
+    assert sorted(path.name for path in tmp_path.glob("*.gif")) == ["a.gif"]
+
+
 def test_a_film_that_cannot_be_made_says_why(qtbot, opened, tmp_path) -> None:
-    with qtbot.waitSignal(opened.controller.jobs.failed, timeout=60_000):
-        exports.save_film(opened, str(tmp_path / "a.avi"))
-    assert "no film format for '.avi'" in opened.toast.text.text()
+    for name, words in (("a.avi", "a.avi: no film format for '.avi'"), ("no/a.gif", "does not exist; create it")):
+        with qtbot.waitSignal(opened.controller.jobs.failed, timeout=60_000):
+            exports.save_film(opened, Turn(), str(tmp_path / name))
+        assert words in opened.toast.text.text() and str(tmp_path) in opened.toast.text.text()
 
 
 def test_progress_as_lines(capsys) -> None:

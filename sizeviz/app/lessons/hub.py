@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QObject
 from qtpy.QtWidgets import QApplication, QMenu, QToolButton
 
+from sizeviz.app.exports import save_process_film
 from sizeviz.app.lessons.in_panes import PaneLessons
 from sizeviz.app.lessons.line_page import LineController, LinePage
 from sizeviz.app.lessons.process import ProcessController
@@ -82,6 +84,7 @@ class Lessons(QObject):
         """The player of the adaptive process, made when it is first needed."""
         if self._process_page is None:
             self._process_page = ProcessPage(self.process, self._window.controller, self._make_canvas)
+            self._process_page.film_asked.connect(partial(save_process_film, self._window))
             self._adopt(self._process_page)
         return self._process_page
 

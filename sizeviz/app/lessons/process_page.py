@@ -49,6 +49,9 @@ TICKS = (0.8, 1.0, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0, 1000.0)
 FOLDER_TIP = "Open what sizeviz adapt wrote, or choose where to keep a new process"
 """What the button of folders does."""
 
+FILM_TIP = "Save the iterations as a film, .mp4 or .gif"
+"""What the button of films does."""
+
 TICK_GAP = 0.07
 """Least distance between named values, in decades."""
 
@@ -161,6 +164,11 @@ class EvolutionPlot(pyqtgraph.PlotWidget):
 class ProcessPage(LessonPage):
     """The player as a person sees it.
 
+    Signals
+    -------
+    film_asked(Path)
+        A film is wanted of the process in a folder.
+
     Parameters
     ----------
     process : ProcessController
@@ -172,6 +180,8 @@ class ProcessPage(LessonPage):
     parent : QWidget, optional
         Owner.
     """
+
+    film_asked = Signal(object)
 
     def __init__(
         self,
@@ -196,6 +206,7 @@ class ProcessPage(LessonPage):
         self.form = self._build_form()
         self.start = QPushButton("Start")
         self.start.setProperty("primary", True)
+        self.film_button = self.add_action("Film…", FILM_TIP)
         self.open_button = self.add_action("Folder…", FOLDER_TIP)
         self._place = QLabel("")
         self._place.setProperty("role", "muted")
@@ -216,6 +227,7 @@ class ProcessPage(LessonPage):
         self.start.setText("Cancel" if shown.running else "Start")
         self.form.setEnabled(not shown.running)
         self.open_button.setEnabled(not shown.running)
+        self.film_button.setEnabled(not shown.running and shown.count > 0)
         worst = 2.0
         if shown.evolution is not None and shown.count:
             worst = max(row.analytic_ratio for row in shown.evolution.iterations)
@@ -302,6 +314,7 @@ class ProcessPage(LessonPage):
         self.plot.chosen.connect(self.process.show_iteration)
         self.start.clicked.connect(self._start_or_cancel)
         self.open_button.clicked.connect(self._ask_folder)
+        self.film_button.clicked.connect(lambda: self.film_asked.emit(self.process.shown.folder))
 
     def _start_or_cancel(self) -> None:
         if self.process.shown.running:
