@@ -6,11 +6,15 @@ iteration, so that a long process needs no more memory than a short one, and can
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from sizeviz.conformity import judged
+import numpy as np
+
+from sizeviz.conformity import element_sizes, judged
+from sizeviz.conformity.report import TOLERANCE
 from sizeviz.errors import InputError
 from sizeviz.files import output_folder, read_mesh, write_mesh
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
@@ -24,7 +28,6 @@ from sizeviz.study.study import Study
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from sizeviz.conformity import Measure, MeshReport
@@ -146,9 +149,25 @@ def _taken_up(source: Source, options: AdaptOptions, folder: Path) -> Evolution:
     found = read_evolution(folder)
     if found is None:
         return fresh
-    if not found.continues(fresh):
-        raise InputError(f"{folder}: holds another adaptive process; choose another --out, or remove that folder")
-    return found
+    if differences := found.differences(fresh):
+        raise InputError(
+            f"{folder}: holds another adaptive process ({'; '.join(differences[:3])}); choose another --out, or remove "
+            "that folder"
+        )
+    whole = replace(found, iterations=tuple(_brought_up_to_date(row, folder) for row in found.iterations))
+    if any(math.isnan(row.strict_ratio) for row in found.iterations):
+        write_evolution(folder, whole)
+    return whole
+
+
+def _brought_up_to_date(row: Iteration, folder: Path) -> Iteration:
+    """Return a row with what older versions did not record, from the R and the sizes in its mesh's file."""
+    if not math.isnan(row.strict_ratio):
+        return row
+    content = read_mesh(folder / row.mesh)
+    ratio = content.cell_data["ratio"] * element_sizes(content.mesh, "max-edge") / content.cell_data["size"]
+    correct = 100.0 * float(np.mean(ratio <= 1.0 + TOLERANCE))
+    return replace(row, strict_ratio=float(ratio.max()), strict_correct=correct)
 
 
 def _last_mesh(evolution: Evolution, folder: Path) -> QuadMesh | None:

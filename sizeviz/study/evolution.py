@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from sizeviz import __version__
 from sizeviz.errors import InputError
 from sizeviz.files import replacing
+from sizeviz.files.guard import one_line
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 RECORD = "evolution.json"
 """The record's name in the folder of the process."""
+
+LATER: tuple[str, ...] = ("strict_ratio", "strict_correct")
+"""Columns that the records of older versions do not have; there they are not a number until the meshes are judged."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +40,8 @@ class Iteration:
     background_correct, analytic_correct : float
         Percentage of elements with R <= 1 against both.
     strict_ratio, strict_correct : float
-        Largest R and percentage of correct elements against the given field by the longest edge, the strictest measure.
+        Largest R and percentage of correct elements against the given field by the longest edge, the strictest measure;
+        not a number in the record of an older version that was only read.
     quality_min, quality_mean, quality_max, quality_std : float
         Shape quality, 0 to 1.
     irregular : float
@@ -88,9 +94,13 @@ class Evolution:
         """Whether the last mesh keeps the limit."""
         return bool(self.iterations) and self.iterations[-1].analytic_ratio <= self.limit
 
-    def continues(self, other: Evolution) -> bool:
-        """Whether the other process is the same one, however far it has come."""
-        return (self.source, self.options, self.limit) == (other.source, other.options, other.limit)
+    def differences(self, other: Evolution) -> list[str]:
+        """Return what makes the other process another one, a few words each; none if it is the same, however far."""
+        mine = {"source": self.source, "limit": self.limit, **self.options}
+        others = {"source": other.source, "limit": other.limit, **other.options}
+        names = dict.fromkeys([*mine, *others])
+        kept, asked = ([values.get(name, "not recorded") for name in names] for values in (mine, others))
+        return [f"{n.replace('_', '-')} {a}, not {b}" for n, a, b in zip(names, kept, asked, strict=True) if a != b]
 
 
 def write_evolution(folder: Path, evolution: Evolution) -> None:
@@ -113,11 +123,21 @@ def read_evolution(folder: Path) -> Evolution | None:
         return None
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
+        older = dict.fromkeys(LATER, math.nan)
         rows = tuple(
-            Iteration(**{entry.name: row[entry.name] for entry in fields(Iteration)}) for row in content["iterations"]
+            Iteration(**{entry.name: {**older, **row}[entry.name] for entry in fields(Iteration)})
+            for row in content["iterations"]
         )
         return Evolution(
             source=content["source"], options=dict(content["options"]), limit=float(content["limit"]), iterations=rows
         )
-    except (OSError, ValueError, TypeError, KeyError) as problem:
-        raise InputError(f"{path}: is not the record of an adaptive process; choose another --out") from problem
+    except KeyError as problem:
+        raise InputError(
+            f"{path}: has no {one_line(problem, 40)}, as a record of sizeviz adapt does; choose another --out, or "
+            "remove that file to begin anew"
+        ) from problem
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError) as problem:
+        raise InputError(
+            f"{path}: is not the record of an adaptive process ({one_line(problem, 80)}); choose another --out, or "
+            "remove that file to begin anew"
+        ) from problem

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -108,14 +109,43 @@ def test_a_finished_process_is_not_run_again(finished):
 
 def test_another_process_is_refused(finished):
     folder, _ = finished
-    with pytest.raises(InputError, match="another adaptive process"):
+    words = r"another adaptive process \(method size-preserving, not gradient-limiting\); choose another --out"
+    with pytest.raises(InputError, match=words):
         adapted(ring_source(), options(method="gradient-limiting"), folder)
 
 
-def test_a_spoilt_record_is_refused(tmp_path):
-    (tmp_path / "evolution.json").write_text(json.dumps({"source": "ring"}))
-    with pytest.raises(InputError, match="not the record"):
+def test_a_record_of_an_older_version_is_taken_up_with_what_it_lacks(finished, tmp_path):
+    folder, whole = finished
+    for path in folder.glob("*.vtu"):
+        shutil.copy(path, tmp_path)
+    content = json.loads((folder / "evolution.json").read_text())
+    content["iterations"] = [
+        {name: value for name, value in row.items() if not name.startswith("strict")}
+        for row in content["iterations"][:3]
+    ]
+    (tmp_path / "evolution.json").write_text(json.dumps(content))
+    assert np.isnan(read_evolution(tmp_path).iterations[1].strict_ratio)
+    again = adapted(ring_source(), options(), tmp_path)
+    for mine, theirs in zip(again.iterations, whole.iterations, strict=True):
+        assert mine.strict_ratio == pytest.approx(theirs.strict_ratio, rel=1e-12)
+        assert mine.strict_correct == theirs.strict_correct and mine.n_quads == theirs.n_quads
+    assert read_evolution(tmp_path) == again
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('{"source": "ring"}', "has no 'iterations', as a record of sizeviz adapt does"),
+        ("[]", "is not the record of an adaptive process"),
+        ("[" * 100_000, "is not the record of an adaptive process"),
+        ("\xff", "is not the record of an adaptive process"),
+    ],
+)
+def test_a_spoilt_record_is_refused(tmp_path, text, words):
+    (tmp_path / "evolution.json").write_text(text, encoding="latin-1")
+    with pytest.raises(InputError, match=rf"evolution.json: {words}.*remove that file to begin anew") as caught:
         adapted(ring_source(), options(), tmp_path)
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 400
 
 
 @pytest.mark.parametrize("bad", [{"method": "magic"}, {"cells": 0}, {"iterations": 0}, {"limit": float("nan")}])
