@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.errors import InputError
-from sizeviz.improvement import _worst_kernels
+from sizeviz.improvement import _look_kernels
 from sizeviz.improvement._workspace import longer
 from sizeviz.sizing import SizeField
 from sizeviz.sizing.analytic import AnalyticSize
+from sizeviz.threads import run_chunks
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,16 +26,13 @@ TOLERANCE = 1e-9
 NEAR = 0.97
 """R as estimated above which a formula's own minimum is looked for."""
 SAFE = 0.9
-"""The same for the last look, which must not miss an element."""
+"""The same for the last look, which must not miss an element, where the field's error is not known."""
+DOUBT = 3.0
+"""Where it is, the last look takes so many times as much for possible."""
+CHUNK = 8192
+"""Elements judged in one go."""
 MOVED = 0.02
 """Share of its longest edge that an element may move before a formula's minimum over it is looked for again."""
-
-
-def longest_edges(points: NDArray[np.float64], quads: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return the longest edge of each element, ``(Q,)``."""
-    corner = points[quads]
-    edge = np.roll(corner, -1, axis=1) - corner
-    return np.sqrt((edge**2).sum(axis=2).max(axis=1))
 
 
 class Judge:
@@ -65,7 +63,8 @@ class Judge:
         n = len(work.quads)
         self.least, self.ratio, self.quality = np.empty(n), np.zeros(n), np.ones(n)
         self.share = np.ones(n)
-        self.seen = np.full((0 if self.exact else n, 4, 2), np.inf)
+        self.seen = np.full((n, 4, 2), np.inf)
+        self.known = np.full((0 if self.exact else n, 4, 2), np.inf)
         self.look(self.alive)
 
     @property
@@ -78,33 +77,44 @@ class Judge:
         more = len(self.work.quads) - len(self.least)
         for name, value in (("least", 1.0), ("ratio", 0.0), ("quality", 1.0), ("share", 1.0)):
             setattr(self, name, longer(getattr(self, name), more, value))
+        nowhere = np.full((more, 4, 2), np.inf)
+        self.seen = np.concatenate([self.seen, nowhere])
         if not self.exact:
-            self.seen = np.concatenate([self.seen, np.full((more, 4, 2), np.inf)])
+            self.known = np.concatenate([self.known, nowhere])
 
     def look(self, rows: NDArray[np.int64], near: float = NEAR, moved: float = MOVED) -> None:
-        """Judge some elements again; a formula's own minimum only where R comes ``near`` to 1 and they ``moved``."""
-        work, threads = self.work, self.work.options.threads
-        quads = work.quads[rows]
-        longest = longest_edges(work.xy, quads)
-        self.least[rows] = self.share[rows] * self.field.min_over(work.xy, quads, threads=threads)
-        self.ratio[rows] = longest / self.least[rows]
-        if not self.exact:
-            away = np.abs(work.xy[quads] - self.seen[rows]).max(axis=(1, 2))
-            doubtful = (self.ratio[rows] > near) & (away > moved * longest)
-            self._look_closely(rows[doubtful], longest[doubtful])
-        _worst_kernels.qualities(rows, work.xy, work.quads, self.quality)
+        """Judge again those of some elements that are no longer where they were.
 
-    def _look_closely(self, rows: NDArray[np.int64], longest: NDArray[np.float64]) -> None:
+        A formula's own minimum is looked for only where R comes ``near`` to 1 and they ``moved``.
+        """
+        work, searcher = self.work, self.field.searcher
+
+        def some(first: int, last: int) -> None:
+            _look_kernels.look(
+                first, last, rows, work.xy, work.quads, searcher, self.share, self.seen, self.least, self.ratio,
+                self.quality,
+            )  # fmt: skip
+
+        run_chunks(some, len(rows), chunk=CHUNK, threads=work.options.threads)
+        if self.exact:
+            return
+        rows = rows[self.ratio[rows] > near]
+        away = np.abs(work.xy[work.quads[rows]] - self.known[rows]).max(axis=(1, 2))
+        self._look_closely(rows[away > moved * self.ratio[rows] * self.least[rows]])
+
+    def _look_closely(self, rows: NDArray[np.int64]) -> None:
         work = self.work
         quads = work.quads[rows]
         least = self.reference.min_over(work.xy, quads, threads=work.options.threads)
-        self.share[rows] *= least / self.least[rows]
-        self.least[rows], self.ratio[rows] = least, longest / least
-        self.seen[rows] = work.xy[quads]
+        found = least / self.least[rows]
+        self.share[rows] *= found
+        self.ratio[rows] /= found
+        self.least[rows], self.known[rows] = least, work.xy[quads]
 
     def verify(self) -> None:
         """Judge every element that comes near to 1 by the reference itself, where it is now."""
-        self.look(self.alive, SAFE, 0.0)
+        error = self.reference.error if isinstance(self.reference, AnalyticSize) else None
+        self.look(self.alive, SAFE if error is None else max(SAFE, 1.0 / (1.0 + DOUBT * error)), 0.0)
 
     @property
     def wrong(self) -> NDArray[np.int64]:

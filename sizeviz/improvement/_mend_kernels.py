@@ -15,6 +15,7 @@ from sizeviz.improvement._attempt_kernels import (
     collect_nodes,
     collect_region,
     inherit,
+    memo,
     restore_places,
     save_places,
     settle,
@@ -22,6 +23,7 @@ from sizeviz.improvement._attempt_kernels import (
 from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates, splits
 from sizeviz.improvement._cavity_kernels import core_nodes, exchange, restore_links, save_links
 from sizeviz.improvement._jit import allocating, compiled
+from sizeviz.improvement._look_kernels import longest_squared
 from sizeviz.improvement._star_kernels import gather
 from sizeviz.improvement._step_kernels import node_step
 from sizeviz.improvement._worst_kernels import lift_free, lift_sliding, quad_quality, star_quality
@@ -64,16 +66,6 @@ def limit_elements(region, n, patch, bound, share, searcher):
         )  # fmt: skip
         held = HELD * share[q] * least
         bound[q] = 1.0 / (held * held)
-
-
-@compiled
-def longest_squared(q, xy, quads):
-    """Return the square of an element's longest edge."""
-    longest = 0.0
-    for k in range(4):
-        a, b = quads[q, k], quads[q, (k + 1) & 3]
-        longest = max(longest, (xy[a, 0] - xy[b, 0]) ** 2 + (xy[a, 1] - xy[b, 1]) ** 2)
-    return longest
 
 
 @compiled
@@ -198,12 +190,14 @@ def asks(v, patch, bound, floor):
 
 @allocating
 def mend(
-    nodes, first, last, which, limit, patch, topo, marks, aims, rails, law, searcher, share, goal, changed, room, tops
+    nodes, first, last, which, limit, patch, topo, marks, aims, rails, law, searcher, share, goal, notes, room, tops
 ):
     """At each of nodes[first:last] that asks for it apply the best operation, if one is worth it; return how many were.
 
-    ``changed`` marks the nodes that moved.
+    ``notes`` is (nodes that moved, what gained too little at each element, so that it is not tried again from another
+    node before something near has changed).
     """
+    changed, failed = notes
     found = np.empty((MOST_CANDIDATES, 4), np.int64)
     done = 0
     for i in range(first, last):
@@ -217,9 +211,14 @@ def mend(
         best, at, moved = WORTH, -1, 0
         for j in range(n):
             op = (found[j, 0], found[j, 1], found[j, 2], found[j, 3])
+            q, bit = memo(op[0], op[1], op[2], patch)
+            if failed[q] & bit:
+                continue
             gain, moved = trial(op, False, patch, topo, marks, aims, rails, law, searcher, share, goal, room, tops)
             if moved > 0:
                 break
+            if gain <= WORTH:
+                failed[q] |= bit
             if gain > best:
                 best, at = gain, j
         if moved == 0 and at >= 0:
@@ -228,5 +227,8 @@ def mend(
         if moved > 0:
             done += 1
             for j in range(moved):
-                changed[room[6][j]] = True
+                w = room[6][j]
+                changed[w] = True
+                for k in range(patch[3][w]):
+                    failed[patch[2][w, k] >> 2] = 0
     return done

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from sizeviz.improvement._jit import allocating, compiled
+from sizeviz.improvement._jit import allocating, compiled, inlined
 
 HILBERT_LEVELS = 16
 
@@ -77,37 +77,70 @@ def find_next(v, w, quads, ring, count):
     return -1
 
 
+@inlined
+def scattered(v):
+    """Return 64 bits that say nothing of how close two numbers are, so that sums of them differ with their terms."""
+    z = np.uint64(v + 1) * np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    return z ^ (z >> np.uint64(27))
+
+
 @compiled
 def mark_boundary(quads, ring, count, boundary):
     """Mark the nodes of edges that only one element has."""
     boundary[:] = False
-    for q in range(len(quads)):
-        if quads[q, 0] < 0:
-            continue
-        for k in range(4):
-            v, w = quads[q, k], quads[q, (k + 1) & 3]
-            if find_next(w, v, quads, ring, count) < 0:
-                boundary[v] = True
-                boundary[w] = True
+    for v in range(len(count)):
+        after = before = np.uint64(0)
+        for j in range(count[v]):
+            q, k = ring[v, j] >> 2, ring[v, j] & 3
+            after += scattered(quads[q, (k + 1) & 3])
+            before += scattered(quads[q, (k + 3) & 3])
+        # around an inner node the elements' next nodes and their previous ones are the same
+        boundary[v] = after != before
 
 
 @allocating
-def colour_blocks(size, quads, ring, count, colour):
+def block_pairs(size, quads, n_blocks):
+    """Return the blocks below each one that share an element with it, some more than once, and where each one's end."""
+    split = np.empty(len(quads), np.int32)
+    n = 0
+    for q in range(len(quads)):
+        if quads[q, 0] >= 0:
+            b = quads[q, 0] // size
+            if quads[q, 1] // size != b or quads[q, 2] // size != b or quads[q, 3] // size != b:
+                split[n] = q
+                n += 1
+    ends = np.zeros(n_blocks + 2, np.int64)
+    for turn in range(2):
+        across = np.empty(ends[n_blocks + 1], np.int64)
+        for i in range(n):
+            for k in range(4):
+                high = quads[split[i], k] // size
+                for j in range(4):
+                    low = quads[split[i], j] // size
+                    if low < high:
+                        if turn == 1:
+                            across[ends[high + 1]] = low
+                        ends[high + (2 if turn == 0 else 1)] += 1
+        if turn == 0:
+            for b in range(n_blocks + 1):
+                ends[b + 1] += ends[b]
+    return across, ends
+
+
+@allocating
+def colour_blocks(size, quads, colour):
     """Give each block of ``size`` consecutive nodes a colour that no block sharing an element with it has.
 
     Returns the number of colours. Blocks of one colour read and write disjoint nodes.
     """
+    across, ends = block_pairs(size, quads, len(colour))
     colour[:] = -1
     taken = np.full(len(colour) + 1, -1, np.int64)
     most = 0
     for b in range(len(colour)):
-        for v in range(b * size, min((b + 1) * size, len(count))):
-            for j in range(count[v]):
-                q = ring[v, j] >> 2
-                for k in range(4):
-                    other = quads[q, k] // size
-                    if other != b and colour[other] >= 0:
-                        taken[colour[other]] = b
+        for i in range(ends[b], ends[b + 1]):
+            taken[colour[across[i]]] = b
         c = 0
         while taken[c] == b:
             c += 1
@@ -144,3 +177,20 @@ def own_nodes(tile_of, patch, zone):
             for k in range(4):
                 if tile_of[quads[ring[v, j] >> 2, k]] != tile_of[v]:
                     zone[v] = -1
+
+
+@allocating
+def order_by_lowest(quads, n_nodes):
+    """Return the elements sorted by the lowest number among their corners, equal ones as they come, ``(Q,) int64``."""
+    start = np.zeros(n_nodes + 1, np.int64)
+    lowest = np.empty(len(quads), np.int32)
+    for q in range(len(quads)):
+        lowest[q] = min(min(quads[q, 0], quads[q, 1]), min(quads[q, 2], quads[q, 3]))
+        start[lowest[q] + 1] += 1
+    for v in range(n_nodes):
+        start[v + 1] += start[v]
+    order = np.empty(len(quads), np.int64)
+    for q in range(len(quads)):
+        order[start[lowest[q]]] = q
+        start[lowest[q]] += 1
+    return order

@@ -1,4 +1,4 @@
-"""Least nodal sizes within a distance of each node of a grid, from minima over squares of 2^k nodes."""
+"""Least nodal sizes within a distance of each node of a grid, from minima over squares of 2^k nodes; slopes, counts."""
 
 from __future__ import annotations
 
@@ -57,3 +57,25 @@ def ball_minima(width, minima, reach, least):
                     best = min(best, window(minima, width, low_near, left_near))
                     best = min(best, window(minima, width, low_middle, left_middle))
             least[i, j] = best
+
+
+@compiled
+def slopes(points, triangles, sizes, out):
+    """Write the slope of a piecewise-linear field on each triangle."""
+    for t in range(len(triangles)):
+        i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        ax, ay = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+        bx, by = points[k, 0] - points[i, 0], points[k, 1] - points[i, 1]
+        a, b = sizes[j] - sizes[i], sizes[k] - sizes[i]
+        out[t] = math.hypot(a * by - b * ay, b * ax - a * bx) / abs(ax * by - ay * bx)
+
+
+@compiled
+def asked(points, triangles, sizes, out):
+    """Write about how many elements each triangle of a piecewise-linear field asks for."""
+    for t in range(len(triangles)):
+        i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        ax, ay = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+        bx, by = points[k, 0] - points[i, 0], points[k, 1] - points[i, 1]
+        mean = (sizes[i] + sizes[j] + sizes[k]) / 3.0
+        out[t] = 0.5 * abs(ax * by - ay * bx) / (mean * mean)

@@ -78,8 +78,7 @@ class Workspace:
         self.curve = mesh.curve[self.order]
         self.fixed = mesh.fixed[self.order]
         quads = rank[mesh.quads]
-        self.quad_order = np.argsort(quads.min(axis=1), kind="stable")
-        self.quads = quads[self.quad_order]
+        self.quads = quads[_mesh_kernels.order_by_lowest(quads, len(rank))]
         self.hint = np.full(len(self.quads), -1, dtype=np.int32)
         self.sizes = np.ones(len(self.quads))
         self.inv = np.ones(len(self.quads))
@@ -94,7 +93,7 @@ class Workspace:
         self.ring = np.zeros((len(self.xy), int(self.count.max()) + SPARE_CORNERS), dtype=np.int32)
         _mesh_kernels.fill_rings(self.quads, self.ring, self.count)
         colour = np.empty(-(-len(self.xy) // BLOCK), dtype=np.int64)
-        n_colours = _mesh_kernels.colour_blocks(BLOCK, self.quads, self.ring, self.count, colour)
+        n_colours = _mesh_kernels.colour_blocks(BLOCK, self.quads, colour)
         self.phases = [np.flatnonzero(colour == c) for c in range(n_colours)]
         self.gain = np.zeros(len(colour))
 

@@ -104,13 +104,18 @@ def lift_worst(floor, limit, passes, patch, inv, bound, rails):
     An edge may grow to ``sqrt(limit)`` times its target and to the limit of its elements, or stay as long
     as it was.
     """
-    xy, quads = patch[0], patch[1]
-    star = np.empty(star_size(patch[2].shape[1]))
+    xy, quads, ring, count = patch
+    star = np.empty(star_size(ring.shape[1]))
+    watched = np.ones(len(quads), np.bool_)
     left = 0
     for turn in range(passes + 1):
         left = 0
         for q in range(len(quads)):
+            if not watched[q]:
+                continue
             if quads[q, 0] < 0 or quad_quality(q, xy, quads) >= floor:
+                # nothing to do here until one of its nodes moves
+                watched[q] = False
                 continue
             left += 1
             if turn == passes:
@@ -123,6 +128,8 @@ def lift_worst(floor, limit, passes, patch, inv, bound, rails):
                     lift_free(v, xy, star, m, 1.0 / limit)
                 elif kind >= 0:
                     lift_sliding(v, xy, star, m, 1.0 / limit, rails[0], kind, rails[2])
+                for j in range(count[v]):
+                    watched[ring[v, j] >> 2] = True
         if left == 0:
             break
     return left

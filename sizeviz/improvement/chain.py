@@ -51,21 +51,27 @@ def improved(
     Cancelled
         If the monitor says so.
     """
-    return improve(mesh, domain, size, options or SmoothOptions(), monitor).result()
+    work = begun(mesh, domain, size, options or SmoothOptions())
+    improve(work, work.options.rounds, monitor)
+    return work.result()
 
 
-def improve(mesh: QuadMesh, domain: Domain, size: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
-    """Do what ``improved`` does and return the workspace, for those who go on from there."""
-    work = Workspace(mesh, domain, with_room(mesh, size), options)
+def begun(mesh: QuadMesh, domain: Domain, size: SizeField, options: SmoothOptions) -> Workspace:
+    """Return the workspace that a mesh is improved in, with the targets that its boundary has room for."""
+    return Workspace(mesh, domain, with_room(mesh, size), options)
+
+
+def improve(work: Workspace, rounds: int, monitor: Monitor) -> None:
+    """Do what ``improved`` does, with some rounds of wide clean-up, in a workspace; for those who go on from there."""
+    options = work.options
     if options.cleanup:
         work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
         clean_fast(work, SubMonitor(monitor, 0.05, 0.2))
         work.sweep(4, SubMonitor(monitor, 0.2, 0.3))
-        if domain.lines:
+        if work.domain.lines:
             rescue(work, FLAT)  # before flat elements beside inner lines draw their neighbours in
-        clean_wide(work, options.rounds, SubMonitor(monitor, 0.3, 0.85))
+        clean_wide(work, rounds, SubMonitor(monitor, 0.3, 0.85))
     work.sweep(options.sweeps, SubMonitor(monitor, 0.85, 1.0))
     work.lift(options.floor)
     if options.cleanup:
         rescue(work, RESCUED)
-    return work

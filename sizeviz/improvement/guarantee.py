@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from sizeviz.errors import InputError
 from sizeviz.improvement._conform import Judge
 from sizeviz.improvement._workspace import STUCK, Workspace
-from sizeviz.improvement.chain import improve
+from sizeviz.improvement.chain import begun, improve
 from sizeviz.improvement.mend import Mender
 from sizeviz.improvement.options import SmoothOptions
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
@@ -43,6 +43,8 @@ FINEST, LOWEST = 0.75, 0.5
 CLOSE = 0.93
 LOOKS = 4
 """Elements with R below CLOSE are judged again after every LOOKS sweeps only."""
+UNASKED = np.inf
+"""R from which a formula's own minimum is looked for between two sweeps: what is known of it must do."""
 LATTICE = 0.5
 """Share of elements with sizes that others have too from which a mesh is taken for a lattice."""
 MORE_ROUNDS = 3
@@ -180,12 +182,12 @@ def guaranteed(
 
 def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothOptions, monitor: Monitor) -> Workspace:
     """Clean up and smooth; a mesh that is mostly lattice, which has few irregular nodes, in fewer rounds."""
-    work = Workspace(mesh, domain, tight, options)
+    work = begun(mesh, domain, tight, options)
     work.aim()
     sizes = np.sort(work.sizes)
     lattice = (np.diff(sizes) <= SAME * sizes[:-1]).mean() >= LATTICE
-    rounds = options.rounds if lattice else MORE_ROUNDS * options.rounds
-    return improve(mesh, domain, tight, replace(options, rounds=rounds), monitor)
+    improve(work, options.rounds if lattice else MORE_ROUNDS * options.rounds, monitor)
+    return work
 
 
 def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
@@ -196,9 +198,10 @@ def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
         judge.limit(everywhere, SLACK)
         work.sweep(1, SubMonitor(monitor, n / AWARE_SWEEPS, (n + 1) / AWARE_SWEEPS), "holding edges below the sizes")
         # far from its limit an element neither feels the edge term nor needs its smallest size looked up again
-        judge.look(everywhere if n % LOOKS == LOOKS - 1 else np.flatnonzero(judge.ratio > CLOSE))
+        judge.look(everywhere if n % LOOKS == LOOKS - 1 else np.flatnonzero(judge.ratio > CLOSE), UNASKED)
         if len(judge.wrong) <= FEW * len(everywhere):
             break
+    judge.look(everywhere)
     monitor.step(1.0)
 
 
@@ -242,9 +245,10 @@ def _repair(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> Non
         for _ in range(AWARE_SWEEPS):
             judge.limit(rows, SLACK)
             settled = work.sweep_some(nodes) < 1e-3
-            judge.look(rows)
+            judge.look(rows, UNASKED)
             if settled:
                 break
+        judge.look(rows)
         work.weight = min(3.0 * work.weight, LARGEST_WEIGHT)
     monitor.step(1.0)
 

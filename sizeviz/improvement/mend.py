@@ -70,7 +70,7 @@ class Mender:
         aims = (work.size.sampler, work.sizes, work.inv, work.hint, work.bound, work.scale**2)
         marks = (cleaner.zone, tile.number, *cleaner.seen)
         law = (work.objective, _mend_kernels.EDGE_WEIGHT)
-        changed = np.zeros(len(work.xy), dtype=np.bool_)
+        changed, failed = np.zeros(len(work.xy), dtype=np.bool_), np.zeros(len(work.quads), dtype=np.int16)
         which = _mend_kernels.ALL if every else _mend_kernels.SPLITS
         listed = np.ascontiguousarray(nodes, dtype=np.int64)
         done = 0
@@ -78,11 +78,11 @@ class Mender:
             monitor.step(first / len(listed), "mending elements")
             done += _mend_kernels.mend(
                 listed, first, min(first + BUDGET, len(listed)), which, MOST_CHANGE, work.patch, cleaner.topo, marks,
-                aims, work.rails, law, judge.field.searcher, judge.share, (floor, lowest), changed, tile.room,
-                tile.tops,
+                aims, work.rails, law, judge.field.searcher, judge.share, (floor, lowest),
+                (changed, failed), tile.room, tile.tops,
             )  # fmt: skip
         if done:
             dead = work.quads[:, 0] < 0
-            judge.ratio[dead], judge.quality[dead] = 0.0, 1.0
+            judge.ratio[dead], judge.quality[dead], judge.seen[dead] = 0.0, 1.0, np.inf
             judge.look(judge.touched(np.flatnonzero(changed & (work.count > 0))))
         return done

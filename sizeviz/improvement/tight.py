@@ -105,11 +105,12 @@ def tightened(
     if not isinstance(field, SizeField):
         raise InputError(f"{field.label}: only a size field or a formula can be guaranteed; sample it on a grid first")
     monitor.step(0.0, "tightening the field")
-    radius, factor = chosen(target)
+    asked = _asked(target)
+    radius, factor = chosen(target, asked)
     radius = options.radius if options.radius is not None else radius
-    levels = plateaus(field, target) if options.radius is None and _alike(field, target) else np.empty(0)
+    levels = plateaus(field, asked) if options.radius is None and _alike(field, target) else np.empty(0)
     if len(levels):
-        sizes = (options.factor if options.factor is not None else ON_PLATEAUS) * _spread(target, levels)
+        sizes = (options.factor if options.factor is not None else ON_PLATEAUS) * _spread(target, levels, asked.sum())
         return target.with_sizes(sizes, f"{target.label}, tight")
     share = _shares(field, target, factor) if options.factor is None else np.full(len(target.sizes), options.factor)
     if field.background.grid is not None and _alike(field, target):
@@ -140,20 +141,21 @@ def _alike(field: SizeField, target: SizeField) -> bool:
     )
 
 
-def plateaus(field: SizeField, target: SizeField) -> NDArray[np.float64]:
-    """Return the sizes of the user's plateaus, ascending, where they hold so much of the mesh that they rule it."""
-    corner = field.sizes[field.background.triangles]
-    flat = (corner[:, 0] == corner[:, 1]) & (corner[:, 0] == corner[:, 2])
-    asked = _asked(target)
-    total = asked.sum()
-    levels, which = np.unique(corner[flat, 0], return_inverse=True)
-    share = np.bincount(which, asked[flat], len(levels)) / total
+def plateaus(field: SizeField, asked: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the sizes of the user's plateaus, ascending, where they hold so much of the mesh that they rule it.
+
+    ``asked`` is the number of elements that each background triangle asks for.
+    """
+    triangles, sizes = field.background.triangles, field.sizes
+    first = sizes[triangles[:, 0]]
+    flat = (first == sizes[triangles[:, 1]]) & (first == sizes[triangles[:, 2]])
+    levels, which = np.unique(first[flat], return_inverse=True)
+    share = np.bincount(which, asked[flat], len(levels)) / asked.sum()
     return levels[share > LEVEL] if share.sum() > PLATEAU else np.empty(0)
 
 
-def _spread(target: SizeField, levels: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the nodal sizes with each plateau's kept as far beyond it as is cheap."""
-    before = _asked(target).sum()
+def _spread(target: SizeField, levels: NDArray[np.float64], before: float) -> NDArray[np.float64]:
+    """Return the nodal sizes with each plateau's kept as far beyond it as is cheap for ``before`` elements."""
     for reach in SPREADS:
         below = np.searchsorted(levels, target.sizes * (1.0 + 1e-9), side="right") - 1
         level = levels[np.maximum(below, 0)]
@@ -179,25 +181,20 @@ def _grid_minima(field: SizeField, reach: NDArray[np.float64]) -> NDArray[np.flo
     return least.ravel()
 
 
-def chosen(target: SizeField) -> tuple[float, float]:
-    """Return the radius and factor that suit a field without ruling plateaus, by its mean slope."""
-    asked = _asked(target)
+def chosen(target: SizeField, asked: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the radius and factor that suit a field without ruling plateaus, by its mean slope over its elements."""
     return (2.0, 0.958) if float((_slopes(target) * asked).sum() / asked.sum()) > STEEP else (1.5, 0.96)
 
 
 def _slopes(field: SizeField) -> NDArray[np.float64]:
     """Return the slope of each background triangle."""
-    corner = field.background.points[field.background.triangles]
-    size = field.sizes[field.background.triangles]
-    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    twice = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    da, db = size[:, 1] - size[:, 0], size[:, 2] - size[:, 0]
-    return np.hypot(da * b[:, 1] - db * a[:, 1], db * a[:, 0] - da * b[:, 0]) / np.abs(twice)
+    slopes = np.empty(len(field.background.triangles))
+    _tight_kernels.slopes(field.background.points, field.background.triangles, field.sizes, slopes)
+    return slopes
 
 
 def _asked(field: SizeField) -> NDArray[np.float64]:
     """Return about how many elements each background triangle asks for."""
-    corner = field.background.points[field.background.triangles]
-    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    mean = field.sizes[field.background.triangles].mean(axis=1)
-    return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / mean**2
+    asked = np.empty(len(field.background.triangles))
+    _tight_kernels.asked(field.background.points, field.background.triangles, field.sizes, asked)
+    return asked

@@ -104,10 +104,15 @@ class AnalyticSize:
         active = np.flatnonzero(np.ptp(values, axis=1) > 0.0)
         for _ in range(ROUNDS):
             step *= 0.5
+            moving = active
             for _ in range(2):  # two moves a step: a kink can run obliquely to both sides
-                before = least[active]
-                self._move(x, y, u, v, least, active, step)
-                still[active] = np.where(least[active] < before, 0, still[active] + 1)
+                before = least[moving]
+                self._move(x, y, u, v, least, moving, step)
+                better = least[moving] < before
+                still[moving[better]] = 0
+                # from where nothing was better, nothing will be at the next move of the same step
+                still[moving[~better]] += 2 if moving is active else 1
+                moving = moving[better]
             cornered = (np.abs(u[active] - 0.5) == 0.5) & (np.abs(v[active] - 0.5) == 0.5)
             active = active[~(cornered & (still[active] >= 2 * SETTLED))]
         return least
