@@ -123,6 +123,27 @@ def quiet(logger: str) -> Iterator[None]:
         log.disabled = before
 
 
+@contextmanager
+def silent_stderr() -> Iterator[None]:
+    """Keep what a C library prints to itself, as libtiff does of every damage; the error says it once.
+
+    It holds for the whole process: whatever else is printed there meanwhile is lost, so keep the block short.
+    """
+    try:
+        kept = os.dup(2)
+    except OSError:  # a program without a terminal may have none
+        yield
+        return
+    try:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        os.close(nowhere)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+
+
 def check_nodes(count: int, what: str = "nodes", limit: int = MAX_NODES) -> None:
     """Raise ``InputError`` if a file declares a negative number of things, or more than the limit."""
     if not 0 <= count <= limit:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import io
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sizeviz.errors import InputError
 from sizeviz.files.convert import luminance
-from sizeviz.files.guard import MAX_PIXELS, check_nodes, quiet
+from sizeviz.files.guard import MAX_PIXELS, check_nodes, quiet, silent_stderr
 from sizeviz.files.image import Image
 
 if TYPE_CHECKING:
@@ -46,7 +47,9 @@ def parse(data: bytes, path: Path, options: ReadOptions) -> Image:
         if frame:
             picture.seek(frame)
             check_nodes(picture.width * picture.height, "pixels", MAX_PIXELS)
-        upright = PIL.ImageOps.exif_transpose(picture)
+        with silent_stderr() if picture.format == "TIFF" else nullcontext():
+            upright = PIL.ImageOps.exif_transpose(picture)
+            upright.load()
         if upright.mode in ("P", "PA", "CMYK", "YCbCr", "LAB", "HSV", "1"):
             upright = upright.convert("L" if upright.mode == "1" else "RGB")
         pixels = np.asarray(upright)

@@ -276,6 +276,8 @@ def _without_counts(flat: NDArray[np.int64], n: int) -> tuple[NDArray[np.int64],
     width = int(flat[0]) + 1 if len(flat) else 0
     if width > 0 and len(flat) == n * width and (flat[::width] == width - 1).all():
         return flat.reshape(n, width)[:, 1:].ravel(), np.arange(n + 1) * (width - 1)
+    if n > len(flat):
+        raise InputError(f"it announces {n} cells in {len(flat)} numbers; the file is corrupt")
     heads = np.empty(n, dtype=np.int64)
     at = 0
     for k, _ in enumerate(heads):

@@ -222,3 +222,12 @@ def test_arrays_are_images_too(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"no array 'intensity' \(found: a, b\)"):
         read_image(tmp_path / "two.npz")
     assert np.array_equal(read_image(tmp_path / "two.npz", ReadOptions(array="b")).values, pixels())
+
+
+def test_libtiff_does_not_talk_over_the_error(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    damaged = bytearray(saved(pixels(), tmp_path / "t.tif", compression="tiff_lzw").read_bytes())
+    damaged[8:20] = b"\xff" * 12
+    (tmp_path / "t.tif").write_bytes(bytes(damaged))
+    with pytest.raises(InputError, match=r"t\.tif: not a readable"):
+        read_image(tmp_path / "t.tif")
+    assert capfd.readouterr().err == ""

@@ -214,3 +214,10 @@ def test_what_a_file_announces_is_not_allocated_before_it_is_there(tmp_path: Pat
 def test_a_surface_is_a_domain_too(tmp_path: Path) -> None:
     (tmp_path / "m.vtp").write_bytes(vtk_bytes(vtk_surface(vtk_grid(with_quads=True)), ".vtp", tmp_path))
     assert read_domain(tmp_path / "m.vtp").area == pytest.approx(quad_mesh().areas.sum(), rel=1e-6)
+
+
+def test_more_legacy_cells_than_numbers_are_refused_before_memory_is_asked_for(tmp_path: Path) -> None:
+    text = "# vtk DataFile Version 4.2\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 double\n0 0 0\n"
+    (tmp_path / "c.vtk").write_text(f"{text}CELLS 2147483648 2\n1 0\nCELL_TYPES 1\n1\n")
+    with pytest.raises(InputError, match="it announces 2147483648 cells in 2 numbers"):
+        read_field(tmp_path / "c.vtk")
