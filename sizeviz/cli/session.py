@@ -88,8 +88,6 @@ def _picture(study: Study, folder: Path, methods: Sequence[str], options: Pipeli
     from sizeviz.scene import save_comparison, save_picture
 
     if comparison:
-        with replacing(folder / "compare.png") as part:
-            save_comparison(study, part, methods=methods, measure=options.measure)
-        return
-    with replacing(folder / "picture.png") as part:
-        save_picture(study, part, method=methods[0], measure=options.measure)
+        save_comparison(study, folder / "compare.png", methods=methods, measure=options.measure)
+    else:
+        save_picture(study, folder / "picture.png", method=methods[0], measure=options.measure)

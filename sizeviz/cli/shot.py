@@ -41,7 +41,7 @@ def shot(
     zoom and point in, in any browser. R of a mesh comes from its own ratio array unless a source is named to judge it.
     """
     from sizeviz.errors import InputError
-    from sizeviz.files import replacing, require_writable_file
+    from sizeviz.files import require_writable_file
     from sizeviz.scene import ViewState, save_page, save_picture
     from sizeviz.scene.opengl import require_gl
     from sizeviz.scene.page import PAGE_SUFFIXES
@@ -69,8 +69,7 @@ def shot(
     if output.suffix.lower() not in VECTOR_SUFFIXES:
         require_gl()
     shown = subjects[chosen]
-    with replacing(output) as part:
-        save_picture(shown, part, color_by=color_by, measure=measure, width=width, edges=edges, dark=dark)
+    save_picture(shown, output, color_by=color_by, measure=measure, width=width, edges=edges, dark=dark)
     print(f"{output}: {shown.title}, {shown.detail} of {file}, coloured by {color_by}")
 
 
@@ -83,17 +82,17 @@ def _runs(file: Path, method: str | None) -> tuple[list[Subject], int, str]:
         If there is none, or not the one asked for.
     """
     from sizeviz.errors import InputError
-    from sizeviz.scene.subject import METHOD_TITLES, subject_of
+    from sizeviz.scene.subject import subjects_of
     from sizeviz.study.storage import read_study
 
-    study = read_study(file).study
-    names = [name for name in METHOD_TITLES if name in study.runs and study.runs[name].mesh is not None]
+    subjects, heading = subjects_of(read_study(file).study)
+    names = list(subjects)
     if not names:
         raise InputError(f"{file}: the study holds no mesh yet; open it with sizeviz gui, run it and save it again")
     wanted = method or ("size-preserving" if "size-preserving" in names else names[0])
     if wanted not in names:
         raise InputError(f"{file}: holds no mesh of {wanted}; it has {', '.join(names)}")
-    return [subject_of(study, name) for name in names], names.index(wanted), study.source.label
+    return list(subjects.values()), names.index(wanted), heading
 
 
 def _mesh(

@@ -29,6 +29,9 @@ MAX_LOOPS = 2_000
 
 _MAX_CROSSING = 500
 _MOST_CROSSINGS = 20_000
+_MOST_NEAR = 10_000_000
+"""Most pairs of segments whose boxes overlap: each is looked at, whether they cross or not."""
+
 _TOGETHER = 64
 
 
@@ -234,9 +237,13 @@ def _check_crossings(rings: Sequence[NDArray[np.float64]]) -> None:
     ends = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings if len(ring)])
     segments = shapely.linestrings(ends)
     tree = shapely.STRtree(segments)
-    met = 0
+    met = near = 0
     for start in range(0, len(segments), _TOGETHER):
-        met += tree.query(segments[start : start + _TOGETHER], predicate="intersects").shape[1]
+        some = segments[start : start + _TOGETHER]
+        near += tree.query(some).shape[1]
+        if near > _MOST_NEAR:
+            raise InputError("its loops run over each other too often to be mended; draw outlines that lie apart")
+        met += tree.query(some, predicate="intersects").shape[1]
         if met > 5 * len(segments) + _MOST_CROSSINGS:  # each segment meets itself and its neighbours
             raise InputError("its loops cross each other too often to be mended; draw outlines that do not cross")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,6 +12,7 @@ from PIL import Image as Pillow
 from PIL import ImageDraw, ImageFont
 
 from sizeviz.errors import InputError
+from sizeviz.files import replacing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -121,13 +121,8 @@ def save_raster(image: Pillow.Image, path: Path) -> None:
     }  # fmt: skip
     if suffix not in formats:
         raise InputError(f"{path}: no picture format for {path.suffix!r}; use .png, .jpg, .tif, .webp, .svg or .pdf")
-    part = path.with_name(path.name + ".part")
-    try:
+    with replacing(path) as part:
         image.save(part, formats[suffix], **({"compress_level": 3} if suffix == "png" else {}))
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
 
 
 def _blend(color: Color, other: Color, share: float) -> Color:

@@ -151,7 +151,8 @@ def save_comparison(
     InputError
         If nothing was run yet, or the place cannot be written.
     """
-    rows, heading = subjects_of(study, methods)
+    subjects, heading = subjects_of(study, methods)
+    rows = list(subjects.values())
     if not rows or any(subject.report is None for subject in rows):
         raise InputError("the comparison needs a judged mesh of every method; run the study first")
     view = ViewState(measure=measure, dark=dark)

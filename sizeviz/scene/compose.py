@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sizeviz.geometry import QuadMesh
 from sizeviz.geometry.arrays import read_only
 from sizeviz.scene.colormaps import color_map
 from sizeviz.scene.scale import CORRECT, ColorScale, ratio_scale
 from sizeviz.scene.spec import Bounds, CellLayer, Color, ImageLayer, Layer, LineLayer, SceneSpec, TriangleLayer
-from sizeviz.scene.subject import MEASURE_TITLES, Subject, subject_of
+from sizeviz.scene.subject import MEASURE_TITLES, Subject, as_subject
 from sizeviz.scene.verdict import verdict
 from sizeviz.scene.view import FIELD_QUANTITIES, QUANTITIES, Quantity, ViewState
 
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from sizeviz.geometry import QuadMesh
     from sizeviz.sizing import SizeField
     from sizeviz.study import Study
 
@@ -84,15 +84,6 @@ def compose(
     ground, ink = DARK if view.dark else LIGHT
     layers = [*layers, *_outline(shown, ink)]
     return SceneSpec(tuple(layers), subject_bounds(shown), scale, shown.title, shown.detail, words, passed, ground, ink)
-
-
-def as_subject(subject: Study | Subject | QuadMesh, method: str) -> Subject:
-    """Return the subject to show: a run of a study, a bare mesh, or the subject handed in."""
-    if isinstance(subject, Subject):
-        return subject
-    if isinstance(subject, QuadMesh):
-        return Subject(title="Mesh", detail=f"{subject.n_quads:,} elements", mesh=subject)
-    return subject_of(subject, method)
 
 
 def values_of(subject: Subject, view: ViewState) -> NDArray[np.float64] | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import zlib
-from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,14 +14,14 @@ import numpy as np
 from sizeviz import __version__
 from sizeviz.errors import InputError
 from sizeviz.files import replacing
-from sizeviz.scene.compose import as_subject, scale_for, subject_bounds, values_of
+from sizeviz.scene.compose import scale_for, subject_bounds, values_of
 from sizeviz.scene.scale import CORRECT
 from sizeviz.scene.subject import MEASURE_TITLES, subjects_of
 from sizeviz.scene.verdict import percent, verdict
 from sizeviz.scene.view import QUANTITIES, Quantity, ViewState
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -143,16 +142,8 @@ def _chosen(
     study: Study | Subject | QuadMesh | Sequence[Subject], methods: Sequence[str] | None
 ) -> tuple[list[tuple[str, Subject]], str]:
     """Return the subjects with a mesh by name, and a heading."""
-    from sizeviz.study import Study
-
-    if isinstance(study, Study):
-        names = [name for name, run in study.runs.items() if run.mesh is not None] if methods is None else list(methods)
-        subjects, heading = subjects_of(study, names)
-    else:
-        subjects = [*study] if isinstance(study, Sequence) else [as_subject(study, "")]
-        heading = " beside ".join(subject.title for subject in subjects)
-        names = [str(k) for k in range(len(subjects))]
-    found = [(name, subject) for name, subject in zip(names, subjects, strict=True) if subject.mesh is not None]
+    subjects, heading = subjects_of(study, methods)
+    found = [(name, subject) for name, subject in subjects.items() if subject.mesh is not None]
     count = sum(subject.mesh.n_quads for _, subject in found if subject.mesh is not None)
     if not count:
         raise InputError("there is no mesh to show on a page; run a method first")

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 from sizeviz.errors import InputError
 from sizeviz.scene.camera import Camera2D
 from sizeviz.scene.canvas import Canvas
-from sizeviz.scene.compose import as_subject, compose
+from sizeviz.scene.compose import compose
 from sizeviz.scene.stage import Stage
+from sizeviz.scene.subject import as_subject
 from sizeviz.scene.vector import VECTOR_SUFFIXES, save_vector
 from sizeviz.scene.view import ViewState
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.errors import InputError
+from sizeviz.geometry import QuadMesh
 from sizeviz.scene.imaging import interpolation_errors
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from sizeviz.conformity import Measure, MeshReport
     from sizeviz.files.image import Image
-    from sizeviz.geometry import Domain, QuadMesh
+    from sizeviz.geometry import Domain
     from sizeviz.scene.view import Quantity
     from sizeviz.sizing import SizeField
     from sizeviz.study import Study
@@ -121,21 +122,43 @@ def subject_of(study: Study, method: str) -> Subject:
     )
 
 
-def subjects_of(study: Study | Sequence[Subject], methods: Sequence[str] | None = None) -> tuple[list[Subject], str]:
-    """Return the methods to compare, in the order of the paper unless told otherwise, and a heading.
+def as_subject(shown: Study | Subject | QuadMesh, method: str = "") -> Subject:
+    """Return the subject to show: a run of a study, a bare mesh, or the subject handed in."""
+    if isinstance(shown, Subject):
+        return shown
+    if isinstance(shown, QuadMesh):
+        return Subject(title="Mesh", detail=f"{shown.n_quads:,} elements", mesh=shown)
+    return subject_of(shown, method)
+
+
+def subjects_of(
+    shown: Study | Subject | QuadMesh | Sequence[Subject], methods: Sequence[str] | None = None
+) -> tuple[dict[str, Subject], str]:
+    """Return what is to be shown side by side, by name, and a heading.
+
+    Parameters
+    ----------
+    shown : Study, Subject, QuadMesh or sequence of Subject
+        A study's runs are named by their methods, in the order of the paper; others are numbered.
+    methods : sequence of str, optional
+        Which runs of a study, in this order; by default all that have a mesh.
 
     Raises
     ------
     InputError
         If a method asked for was not run.
     """
-    if isinstance(study, Sequence):
-        return list(study), " beside ".join(subject.title for subject in study)
-    names = list(methods) if methods is not None else [name for name in METHOD_TITLES if name in study.runs]
-    missing = [name for name in names if name not in study.runs]
+    from sizeviz.study import Study
+
+    if not isinstance(shown, Study):
+        several = [*shown] if isinstance(shown, Sequence) else [as_subject(shown)]
+        return {str(k): subject for k, subject in enumerate(several)}, " beside ".join(s.title for s in several)
+    runs = shown.runs
+    names = [name for name in METHOD_TITLES if name in runs and runs[name].mesh is not None]
+    missing = [name for name in methods or () if name not in runs]
     if missing:
-        raise InputError(f"no run of {', '.join(missing)} in this study; it has {', '.join(study.runs) or 'none'}")
-    return [subject_of(study, name) for name in names], study.source.label
+        raise InputError(f"no run of {', '.join(missing)} in this study; it has {', '.join(runs) or 'none'}")
+    return {name: subject_of(shown, name) for name in (names if methods is None else methods)}, shown.source.label
 
 
 def _detail(study: Study, method: str) -> str:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sizeviz.errors import InputError
+from sizeviz.files import replacing
 from sizeviz.scene.spec import CellLayer, Color, ImageLayer, LineLayer, SceneSpec, TriangleLayer
 
 if TYPE_CHECKING:
@@ -66,14 +65,10 @@ def save_vector(spec: SceneSpec, path: Path, *, width: float = 7.0) -> Path:
     figure.text(0.03, 0.94 - 0.94 * share - 0.02, spec.verdict, color=ink, fontsize=9, va="top")
     if spec.scale is not None:
         _bar(figure, spec.scale, 0.36 / (height + 1.1), ink)
-    part = path.with_name(path.name + ".part")
-    try:
-        with rc_context({"svg.fonttype": "none", "pdf.fonttype": 42}):
-            figure.savefig(part, format=path.suffix.lower().lstrip("."), facecolor=figure.get_facecolor())
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
+    kind = path.suffix.lower().lstrip(".")
+    undated = {"Date": None} if kind == "svg" else {"CreationDate": None}  # equal scenes are equal files
+    with replacing(path) as part, rc_context({"svg.fonttype": "none", "svg.hashsalt": "sizeviz", "pdf.fonttype": 42}):
+        figure.savefig(part, format=kind, facecolor=figure.get_facecolor(), metadata=undated)
     return path
 
 

@@ -63,14 +63,16 @@ def damaged_json(data: bytes, draw: Draw) -> bytes:
         return odd_json(draw).encode()
     for _ in range(draw.choice((1, 1, 2, 3))):
         holder, key = draw.choice(places)
+        if key not in _keys(holder):  # gone by the damage before
+            continue
         how = draw.random()
         if how < 0.6:
             holder[key] = "\x01odd"
         elif how < 0.75:
-            holder.pop(key) if key in _keys(holder) else None
+            holder.pop(key)
         elif how < 0.9:
             other, at = draw.choice(places)
-            if at in _keys(other) and key in _keys(holder):
+            if at in _keys(other):
                 holder[key] = json.loads(json.dumps(other[at]))
         elif isinstance(holder, dict):
             holder["surplus"] = "\x01odd"

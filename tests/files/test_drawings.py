@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +129,13 @@ def test_a_scribble_is_refused_soon(tmp_path: Path) -> None:
     scribble = np.random.default_rng(0).random((3000, 2)).tolist()
     with pytest.raises(InputError, match="cross each other too often"):
         from_geojson(tmp_path, polygon([*scribble, scribble[0]]))
+
+
+def test_curves_that_run_beside_each_other_for_ever_are_refused_soon(tmp_path: Path) -> None:
+    began = time.process_time()
+    with pytest.raises(InputError, match="run over each other too often"):
+        from_svg(tmp_path, f'<path d="M0,0 {"c1e9,0 0,1e9 1,1" * 500}"/>')
+    assert time.process_time() - began < 5.0
 
 
 def test_y_points_upwards_in_the_domain(tmp_path: Path) -> None:
