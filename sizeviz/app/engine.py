@@ -132,7 +132,7 @@ class PipelineEngine:
         drawing the stroke meanwhile.
         """
         monitor = prepared(monitor)
-        from sizeviz.sizing.again import limited_again, preserved_again
+        from sizeviz.sizing.again import processed_again
         from sizeviz.sizing.envelopes import limited, preserved
 
         threads = options.threads or max(1, default_threads() - 1)
@@ -145,8 +145,8 @@ class PipelineEngine:
             }
         before, targets = since.field, since.targets
         return {
-            LIMITED: limited_again(asked, options.limit, _asked(before, options), targets[LIMITED], threads, first),
-            PRESERVED: preserved_again(field, options.preserve, before, targets[PRESERVED], threads, second),
+            LIMITED: processed_again(asked, options.limit, _asked(before, options), targets[LIMITED], threads, first),
+            PRESERVED: processed_again(field, options.preserve, before, targets[PRESERVED], threads, second),
         }
 
     def default_options(self) -> StudyOptions:

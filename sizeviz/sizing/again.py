@@ -15,80 +15,59 @@ from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sizing._envelope_kernels import LIMIT, PRESERVE
 from sizeviz.sizing._tile_kernels import TILE
 from sizeviz.sizing.envelopes import fill_tiles_of_grid, limited, preserved
+from sizeviz.sizing.options import LimitOptions, PreserveOptions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sizeviz.sizing.field import SizeField
-    from sizeviz.sizing.options import LimitOptions, PreserveOptions
 
 SLACK = 1e-9
 """Share by which a reach is raised, so that rounding never leaves a node out."""
 
 
-def limited_again(
+def processed_again(
     field: SizeField,
-    options: LimitOptions,
+    options: LimitOptions | PreserveOptions,
     before: SizeField,
     result: SizeField,
     threads: int | None = None,
     monitor: Monitor = SILENT,
 ) -> SizeField:
-    """Return ``limited(field, options)``, given that ``limited(before, options)`` is ``result``.
+    """Return the limited or preserved field, given what the same options made of the sizes before.
 
     Parameters
     ----------
     field : SizeField
         The prescribed sizes.
-    options : LimitOptions
-        Slope and kind of distance; the same as before.
+    options : LimitOptions or PreserveOptions
+        They say which of the two; the same as before.
     before, result : SizeField
-        The sizes as they were, and what limiting made of them.
+        The sizes as they were, and what ``limited`` or ``preserved`` made of them.
     threads, monitor
-        As for ``limited``.
+        As for ``limited`` and ``preserved``.
 
     Raises
     ------
     Cancelled
         If the monitor says so.
     """
-    if options.distance != "euclidean" or not _alike(field, before, result):
-        return limited(field, options, threads, monitor)
-    sizes = _again(field, before, result, LIMIT, options.epsilon, 1.0, threads, monitor, "Limiting the gradient")
-    return field.with_sizes(sizes, f"{field.label}, gradient limited")
-
-
-def preserved_again(
-    field: SizeField,
-    options: PreserveOptions,
-    before: SizeField,
-    result: SizeField,
-    threads: int | None = None,
-    monitor: Monitor = SILENT,
-) -> SizeField:
-    """Return ``preserved(field, options)``, given that ``preserved(before, options)`` is ``result``.
-
-    Parameters
-    ----------
-    field : SizeField
-        The prescribed sizes.
-    options : PreserveOptions
-        alpha, beta and kind of distance; the same as before.
-    before, result : SizeField
-        The sizes as they were, and what preserving made of them.
-    threads, monitor
-        As for ``preserved``.
-
-    Raises
-    ------
-    Cancelled
-        If the monitor says so.
-    """
-    if options.distance != "euclidean" or not _alike(field, before, result):
-        return preserved(field, options, threads, monitor)
-    alpha, beta = options.alpha, options.beta
-    sizes = _again(field, before, result, PRESERVE, alpha, beta, threads, monitor, "Preserving sizes")
-    return field.with_sizes(sizes, f"{field.label}, size preserved")
+    alike = options.distance == "euclidean" and _alike(field, before, result)
+    if isinstance(options, LimitOptions):
+        if not alike:
+            return limited(field, options, threads, monitor)
+        kind, coefficient, scale = LIMIT, options.epsilon, 1.0
+        message, words = "Limiting the gradient", "gradient limited"
+    else:
+        if not alike:
+            return preserved(field, options, threads, monitor)
+        kind, coefficient, scale = PRESERVE, options.alpha, options.beta
+        message, words = "Preserving sizes", "size preserved"
+    wanted = reached_tiles(field, before, result, kind, coefficient, scale)
+    sizes = result.sizes.copy()
+    if wanted.any():
+        fill_tiles_of_grid(field, kind, coefficient, scale, wanted, sizes, threads, monitor, message)
+    return field.with_sizes(read_only(sizes), f"{field.label}, {words}")
 
 
 def reached_tiles(
@@ -125,24 +104,6 @@ def reached_tiles(
     away = np.hypot(away_x[None, :], away_y[:, None])
     reach = (highest - least) / coefficient if kind == LIMIT else coefficient * highest
     return (away <= reach * (1.0 + SLACK)) & (highest * (1.0 + SLACK) >= least)
-
-
-def _again(
-    field: SizeField,
-    before: SizeField,
-    result: SizeField,
-    kind: int,
-    coefficient: float,
-    scale: float,
-    threads: int | None,
-    monitor: Monitor,
-    message: str,
-) -> NDArray[np.float64]:
-    wanted = reached_tiles(field, before, result, kind, coefficient, scale)
-    out = result.sizes.copy()
-    if wanted.any():
-        fill_tiles_of_grid(field, kind, coefficient, scale, wanted, out, threads, monitor, message)
-    return read_only(out)
 
 
 def _alike(field: SizeField, before: SizeField, result: SizeField) -> bool:

@@ -7,11 +7,11 @@ import pytest
 
 from sizeviz.sizing import BackgroundMesh, LimitOptions, PreserveOptions, SizeField, limited, preserved
 from sizeviz.sizing._envelope_kernels import LIMIT, PRESERVE
-from sizeviz.sizing.again import limited_again, preserved_again, reached_tiles
+from sizeviz.sizing.again import processed_again, reached_tiles
 
 VERBS = {
-    "limited": (limited, limited_again, LimitOptions(epsilon=0.4)),
-    "preserved": (preserved, preserved_again, PreserveOptions(alpha=1.7, beta=0.8)),
+    "limited": (limited, LimitOptions(epsilon=0.4)),
+    "preserved": (preserved, PreserveOptions(alpha=1.7, beta=0.8)),
 }
 
 
@@ -32,32 +32,32 @@ def touched(field: SizeField, seed: int, factor: float) -> SizeField:
 @pytest.mark.parametrize("factor", [0.1, 0.7, 1.5, 20.0])
 @pytest.mark.parametrize("shape", [(41, 33), (64, 64), (9, 50)])
 def test_done_again_is_what_it_would_be_from_the_start(name: str, factor: float, shape: tuple[int, int]) -> None:
-    verb, again, options = VERBS[name]
+    verb, options = VERBS[name]
     for seed in range(4):
         before = rough(*shape, seed)
         field = touched(before, seed, factor)
         expected = verb(field, options).sizes
-        sizes = again(field, options, before, verb(before, options)).sizes
+        sizes = processed_again(field, options, before, verb(before, options)).sizes
         np.testing.assert_allclose(sizes, expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", VERBS)
 def test_many_strokes_one_after_another_add_up(name: str) -> None:
-    verb, again, options = VERBS[name]
+    verb, options = VERBS[name]
     field = rough(49, 49, 1)
     result = verb(field, options)
     for seed, factor in enumerate((0.2, 5.0, 0.5, 3.0, 0.1)):
         before, field = field, touched(field, seed, factor)
-        result = again(field, options, before, result)
+        result = processed_again(field, options, before, result)
     np.testing.assert_allclose(result.sizes, verb(field, options).sizes, rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", VERBS)
 def test_nothing_changed_is_nothing_done(name: str) -> None:
-    verb, again, options = VERBS[name]
+    verb, options = VERBS[name]
     field = rough(33, 33, 2)
     result = verb(field, options)
-    assert np.array_equal(again(field, options, field, result).sizes, result.sizes)
+    assert np.array_equal(processed_again(field, options, field, result).sizes, result.sizes)
 
 
 @pytest.mark.parametrize(("kind", "coefficient"), [(LIMIT, 0.5), (PRESERVE, 2.0)])
@@ -72,9 +72,9 @@ def test_a_small_change_reaches_a_part_only(kind: int, coefficient: float) -> No
 
 @pytest.mark.parametrize("name", VERBS)
 def test_without_a_grid_everything_is_done(name: str) -> None:
-    verb, again, options = VERBS[name]
+    verb, options = VERBS[name]
     grid = BackgroundMesh.unit_square_grid(17, 17)
     before = SizeField(BackgroundMesh(grid.points, grid.triangles), np.linspace(0.02, 0.2, 17 * 17))
     field = before.with_sizes(before.sizes[::-1].copy())
-    sizes = again(field, options, before, verb(before, options)).sizes
+    sizes = processed_again(field, options, before, verb(before, options)).sizes
     assert np.array_equal(sizes, verb(field, options).sizes)
