@@ -213,7 +213,7 @@ def build(kind, code, arg, births, patch, topo, room):
         return build_open(code, arg, births[0], patch, guard, boundary, old, new, spots, work)
     if kind == PILLOW:
         return build_pillow(code, births, patch, old, new, spots)
-    return build_swap(code, arg, patch, guard, old, new, spots)
+    return build_swap(code, arg, patch, guard, topo[3], old, new, spots)
 
 
 @compiled

@@ -48,7 +48,7 @@ def offer(kind, code, arg, change, limit, found, n):
 @compiled
 def collapse_change(a, c, b, d, count, topo):
     """Return the change of energy when opposite corners a and c become one, or a large number."""
-    ideal, guard, boundary = topo
+    ideal, guard, boundary, _ = topo
     if guard[c]:
         a, c = c, a
     if guard[c]:
@@ -62,9 +62,9 @@ def collapse_change(a, c, b, d, count, topo):
 @compiled
 def swap_change(code, turn, patch, topo):
     """Return the change of energy when an edge is turned, or a large number where it cannot be."""
-    ideal, guard, boundary = topo
+    ideal, _, boundary, lined = topo
     other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
-    if other < 0 or (guard[v] and guard[w]):
+    if other < 0 or (lined[v] and lined[w]):
         return IMPOSSIBLE
     s, t = (y1, x1) if turn == CLOCKWISE else (y2, x2)
     count = patch[3]
@@ -130,21 +130,21 @@ def splits(v, patch, topo, work, limit, found):
 
 @compiled
 def is_flat(v, a, b, xy):
-    """Say whether the directions from v to two of its neighbours differ by more than 150 degrees."""
+    """Say whether the directions from v to two of its neighbours differ by more than 135 degrees."""
     ux, uy = xy[a, 0] - xy[v, 0], xy[a, 1] - xy[v, 1]
     wx, wy = xy[b, 0] - xy[v, 0], xy[b, 1] - xy[v, 1]
     dot = ux * wx + uy * wy
-    return dot < 0.0 and 4.0 * dot * dot > 3.0 * (ux * ux + uy * uy) * (wx * wx + wy * wy)
+    return dot < 0.0 and 2.0 * dot * dot > (ux * ux + uy * uy) * (wx * wx + wy * wy)
 
 
 @compiled
 def candidates(v, patch, topo, work, limit, found):
     """List the operations near node v that change the energy by at most ``limit``, best first; return their number.
 
-    ``topo`` is (ideal, guard, boundary): elements wanted at each node, whether it may be removed or split, whether it
-    lies on the boundary. Rows of ``found`` are (kind, code, argument, change).
+    ``topo`` is (ideal, guard, boundary, lined): elements wanted at each node, whether it may not be removed or split,
+    whether it lies on the boundary, whether it may lie on an inner line. Rows of ``found`` are (kind, code, argument, change).
     """
-    ideal, guard, boundary = topo
+    ideal, guard, boundary, _ = topo
     nodes, across, codes = work
     count = patch[3]
     m = fan(v, patch, boundary, nodes, across, codes)
@@ -166,8 +166,9 @@ def candidates(v, patch, topo, work, limit, found):
         for w in (nodes[0], across[0], nodes[1]):
             change += gain(w, GAIN, count, ideal, boundary)
         n = offer(PILLOW, codes[0], NONE, change, limit, found, n)
-    elif guard[v] and not boundary[v]:
-        # a node on an inner line may have a single element on one side of it, and no move makes that convex
+    elif guard[v]:
+        # a node that cannot move may have a single element where there is room for two, beside an inner line or in a
+        # reentrant corner; no move betters its shape
         for j in range(m):
             if is_flat(v, nodes[j], nodes[j + 1], patch[0]):
                 change = 4 + gain(v, GAIN, count, ideal, boundary)

@@ -150,21 +150,51 @@ def colour_blocks(size, quads, colour):
 
 
 @compiled
-def ideal_counts(xy, quads, ring, count, boundary, ideal):
-    """Write the number of elements wanted at each node: 4 inside, one for each right angle on the boundary."""
+def corner_angle(code, xy, quads):
+    """Return the angle of an element's corner, in radians, -pi / 2 to 3 pi / 2."""
+    q, k = code >> 2, code & 3
+    v, n, p = quads[q, k], quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
+    ax, ay, bx, by = xy[n, 0] - xy[v, 0], xy[n, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
+    turn = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
+    # a straight side seen from one element may come out as minus pi
+    return turn if turn > -0.5 * math.pi else turn + 2.0 * math.pi
+
+
+@compiled
+def sector_counts(v, patch, lined):
+    """Return the elements wanted at a node in all its sectors, which the boundary and inner lines bound."""
+    xy, quads, ring, count = patch
+    wanted = 0
+    for j in range(count[v]):
+        start = ring[v, j]
+        w = quads[start >> 2, ((start & 3) + 1) & 3]
+        if not lined[w] and find_next(w, v, quads, ring, count) >= 0:
+            continue
+        angle, code = 0.0, start
+        for _ in range(count[v]):
+            angle += corner_angle(code, xy, quads)
+            last = quads[code >> 2, ((code & 3) + 3) & 3]
+            code = find_next(v, last, quads, ring, count)
+            if code < 0 or lined[last]:
+                break
+        wanted += max(1, round(angle / (0.5 * math.pi)))
+    return wanted
+
+
+@compiled
+def ideal_counts(patch, boundary, lined, ideal):
+    """Write the number of elements wanted at each node: 4 inside, one for each right angle between fixed edges."""
+    xy, quads, ring, count = patch
     for v in range(len(count)):
         ideal[v] = 4
-        if not boundary[v]:
-            continue
-        angle = 0.0
-        for j in range(count[v]):
-            q, k = ring[v, j] >> 2, ring[v, j] & 3
-            n, p = quads[q, (k + 1) & 3], quads[q, (k + 3) & 3]
-            ax, ay, bx, by = xy[n, 0] - xy[v, 0], xy[n, 1] - xy[v, 1], xy[p, 0] - xy[v, 0], xy[p, 1] - xy[v, 1]
-            turn = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
-            # a straight side seen from one element may come out as minus pi
-            angle += turn if turn > -0.5 * math.pi else turn + 2.0 * math.pi
-        ideal[v] = max(1, round(angle / (0.5 * math.pi)))
+        if lined[v]:
+            wanted = sector_counts(v, patch, lined)
+            ideal[v] = wanted if wanted > 0 else 4
+        elif boundary[v]:
+            angle = 0.0
+            for j in range(count[v]):
+                angle += corner_angle(ring[v, j], xy, quads)
+            ideal[v] = max(1, round(angle / (0.5 * math.pi)))
 
 
 @compiled

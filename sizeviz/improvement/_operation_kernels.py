@@ -164,11 +164,11 @@ def spread(v, w, s, t, xy, guard, spots):
 
 
 @compiled
-def build_swap(code, turn, patch, guard, old, new, spots):
-    """Turn the edge between two elements within their hexagon."""
+def build_swap(code, turn, patch, guard, lined, old, new, spots):
+    """Turn the edge between two elements within their hexagon, unless it may belong to an inner line."""
     xy, quads, ring, count = patch
     other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
-    if other < 0 or (guard[v] and guard[w]):
+    if other < 0 or (lined[v] and lined[w]):
         return 0, 0, 0
     s, t = (y1, x1) if turn == CLOCKWISE else (y2, x2)
     if s == x1 or s == x2 or t == y1 or t == y2:

@@ -96,14 +96,16 @@ class Cleaner:
         boundary = np.zeros(n, dtype=np.bool_)
         _mesh_kernels.mark_boundary(work.quads, work.ring, work.count, boundary)
         ideal = np.zeros(n, dtype=np.int32)
-        _mesh_kernels.ideal_counts(work.xy, work.quads, work.ring, work.count, boundary, ideal)
+        lined = _may_be_lined(work)
+        _mesh_kernels.ideal_counts(work.patch, boundary, lined, ideal)
         zone = np.zeros(n, dtype=np.int32)
         _mesh_kernels.own_nodes(tile_of, self.patch, zone)
         guard = (work.curve >= 0) | work.fixed | boundary
         more = n_tiles * spare
         work.lengthen(more, more)
         self.patch = work.patch
-        self.topo = (longer(ideal, more, 4), longer(guard, more, False), longer(boundary, more, False))
+        held = (longer(flags, more, False) for flags in (guard, boundary, lined))
+        self.topo = (longer(ideal, more, 4), *held)
         self.zone = np.concatenate([zone, np.repeat(np.arange(n_tiles, dtype=np.int32), spare)])
         self.seen = np.zeros(n + more, dtype=np.int64), np.zeros(len(work.quads), dtype=np.int64)
         self.awake, self.failed = np.zeros(n + more, dtype=np.bool_), np.zeros(len(work.quads), dtype=np.int16)
@@ -180,6 +182,13 @@ class Cleaner:
         while tile.tops[4] > 0:
             done += self._clean(tile, limit, MOST_CANDIDATES - 1, law)
         return done
+
+
+def _may_be_lined(work: Workspace) -> NDArray[np.bool_]:
+    """Return the nodes that lie on inner lines, and all fixed ones if there are lines, whose ends are among them."""
+    inner = np.array([curve.inner for curve in work.domain.curves])
+    on_line = (work.curve >= 0) & inner[work.curve]
+    return on_line | work.fixed if inner.any() else on_line
 
 
 def cleaned(

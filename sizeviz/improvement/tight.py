@@ -44,6 +44,10 @@ ON_PLATEAUS = 0.96
 """The factor there."""
 DEAREST = 0.04
 """Share of elements that this may add."""
+RADII = (2.0, 1.5, 1.25, 1.1, 1.0)
+"""Radii that are tried, from the one that suits the slope downwards: from alpha on the field may fall to its floor."""
+DEAR = 0.45
+"""Share of elements that a radius may add; the last is taken whatever it adds."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,13 +118,24 @@ def tightened(
         return target.with_sizes(sizes, f"{target.label}, tight")
     share = _shares(field, target, factor) if options.factor is None else np.full(len(target.sizes), options.factor)
     if field.background.grid is not None and _alike(field, target):
-        sizes = np.minimum(share * target.sizes, share * _grid_minima(field, radius * target.sizes))
-        return target.with_sizes(sizes, f"{target.label}, tight")
+        radii = [radius, *(r for r in RADII if r < radius and options.radius is None)]
+        return _affordable(field, target, share, radii)
     # h* itself bounds the minimum within alpha h* from below; a second scale stands for the floors of narrow valleys
     lower = target.with_sizes(share * target.sizes)
     second = PreserveOptions(alpha=SECOND_SCALE, beta=SECOND_SHARE * float(share.max()))
     both = minimum([lower, preserved(field, second, monitor=monitor)])
     return replace(both, label=f"{target.label}, tight")
+
+
+def _affordable(field: SizeField, target: SizeField, share: NDArray[np.float64], radii: list[float]) -> SizeField:
+    """Return the tight field of the largest radius that does not add too many elements."""
+    asked = _asked(target).sum()
+    for radius in radii:
+        sizes = np.minimum(share * target.sizes, share * _grid_minima(field, radius * target.sizes))
+        tight = target.with_sizes(sizes, f"{target.label}, tight")
+        if _asked(tight).sum() <= (1.0 + DEAR) * asked:
+            break
+    return tight
 
 
 def _shares(field: SizeField, target: SizeField, factor: float) -> NDArray[np.float64]:

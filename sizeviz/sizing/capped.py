@@ -52,9 +52,31 @@ def capped(field: SizeField, points: NDArray[np.float64], caps: NDArray[np.float
     at, triangles = field.background.points, field.background.triangles
     bound = _bounds(at, points, caps, slope, float(field.sizes.max()))
     lowered = bound < field.sizes
-    touched = np.asarray(lowered[triangles].any(axis=1))
+    own = np.minimum(caps, _bounds(points, points, caps, slope, float(caps.max())))
+    sizes = np.concatenate([np.minimum(field.sizes, bound), own])
+    return renewed(field, points, sizes, np.asarray(lowered[triangles].any(axis=1)))
+
+
+def renewed(
+    field: SizeField, points: NDArray[np.float64], sizes: NDArray[np.float64], touched: NDArray[np.bool_]
+) -> SizeField:
+    """Return a field with more background nodes; triangles far from them stay as they are.
+
+    Parameters
+    ----------
+    field : SizeField
+        The field before.
+    points : (M, 2) float64
+        The additional nodes, all different, in the background's box.
+    sizes : (V + M,) float64
+        Sizes at the old nodes and at the new ones.
+    touched : (T,) bool
+        Triangles that are to be made anew even where no point lies in them.
+    """
+    at, triangles = field.background.points, field.background.triangles
     inside = np.empty(len(points), dtype=np.int64)
     triangles_into(field.sampler, points, inside)
+    touched = touched.copy()
     touched[inside] = True
     near = np.zeros(len(at), dtype=bool)
     near[triangles[touched]] = True
@@ -70,8 +92,6 @@ def capped(field: SizeField, points: NDArray[np.float64], caps: NDArray[np.float
     anew = triangulated(np.vstack([at[nodes], points]), rank[rim])
     number = np.concatenate([nodes, len(at) + np.arange(len(points))])
     cells = np.vstack([triangles[~touched], number[anew.triangles].astype(np.int32)])
-    own = np.minimum(caps, _bounds(points, points, caps, slope, float(caps.max())))
-    sizes = np.concatenate([np.minimum(field.sizes, bound), own])
     everywhere = np.vstack([at, points])
     used = np.zeros(len(everywhere), dtype=bool)
     used[cells] = True

@@ -1,8 +1,8 @@
-"""Keeping the promise R <= 1: where one mesh cannot be repaired, a finer one is made.
+"""Keeping the promise R <= 1: where a mesh cannot be repaired, another is made with smaller sizes just there.
 
 What moves and operations can repair depends on the room that the mesh leaves. Where sizes change very fast, or a domain
-is hardly wider than its elements, too few are left to work with; meshing again with smaller sizes that grow more slowly
-then costs less than any repair.
+is hardly wider than its elements, too few are left to work with. The tight field is then lowered around the elements
+that are left, which costs few elements more, and all is meshed again.
 """
 
 from __future__ import annotations
@@ -10,22 +10,26 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sizeviz.errors import MeshingError
 from sizeviz.improvement import GuaranteeOptions, GuaranteeReport, guaranteed
 from sizeviz.meshing import MeshOptions, generated
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
-from sizeviz.sizing import LimitOptions, limited
+from sizeviz.sizing.lowered import lowered
 
 if TYPE_CHECKING:
     from sizeviz.geometry import Domain, QuadMesh
     from sizeviz.sizing import SizeField, SizeFunction
 
-FINER: tuple[tuple[float, float], ...] = ((0.9, 0.7), (0.8, 0.5), (0.7, 0.35))
-"""Share of the tight field's sizes, and the slope that they may have, of the second mesh and those after it."""
+REACH = (1.5, 1.5, 2.0, 2.0, 3.0, 4.0)
+"""How far around an element that is left sizes are lowered, in edges of it, before each of the meshes that follow."""
+SHARE, LEAST_SHARE = 0.88, 0.6
+"""By how much: this share, over the element's R, but no less than the second."""
+LARGEST = 1.5
+"""R above which an element's edge no longer tells how far to reach."""
 HOPELESS = 0.1
 """Share of wrong elements from which a mesh that is not the last is not repaired."""
-HELD = "with an edge between two fixed nodes"
-"""The reason that no finer field removes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +63,7 @@ def promised(
     options: GuaranteeOptions | None = None,
     monitor: Monitor = SILENT,
 ) -> Promise:
-    """Return a mesh with R <= 1 on every element, from the raw one given or from a finer one.
+    """Return a mesh with R <= 1 on every element, from the raw one given or from one that is finer where needed.
 
     Parameters
     ----------
@@ -72,7 +76,7 @@ def promised(
     raw : QuadMesh
         A mesh generated for it.
     meshing : MeshOptions, optional
-        How finer ones are generated; the scale is always 1.
+        How others are generated; the scale is always 1.
     options : GuaranteeOptions, optional
         How hard each is repaired.
     monitor : Monitor
@@ -87,22 +91,31 @@ def promised(
     """
     meshing, options = replace(meshing or MeshOptions(), scale=1.0), options or GuaranteeOptions()
     part = SubMonitor(monitor, 0.0, 0.6)
-    best = _repaired(domain, reference, tight, raw, replace(options, hopeless=HOPELESS), part)
-    for n, (share, slope) in enumerate(FINER):
-        if best.report.holds or set(best.report.reasons) == {HELD}:
+    best = last = _repaired(domain, reference, tight, raw, replace(options, hopeless=HOPELESS), part)
+    for n, reach in enumerate(REACH):
+        if best.report.holds:
             break
-        part = SubMonitor(monitor, 0.6 + 0.4 * n / len(FINER), 0.6 + 0.4 * (n + 1) / len(FINER))
-        last = n == len(FINER) - 1
-        finer = limited(tight.with_sizes(share * tight.sizes), LimitOptions(epsilon=slope))
+        part = SubMonitor(monitor, 0.6 + 0.4 * n / len(REACH), 0.6 + 0.4 * (n + 1) / len(REACH))
+        finer = _with_room(last, reach)
         try:
             mesh = generated(domain, finer, meshing, SubMonitor(part, 0.0, 0.4))
         except MeshingError:  # the finer field may pass the limit of elements; what there is stays
             break
-        strict = options if last else replace(options, hopeless=HOPELESS)
-        other = _repaired(domain, reference, finer, mesh, strict, SubMonitor(part, 0.4, 1.0))
-        best = min(best, other, key=lambda one: len(one.report.elements))
+        strict = options if n == len(REACH) - 1 else replace(options, hopeless=HOPELESS)
+        last = _repaired(domain, reference, finer, mesh, strict, SubMonitor(part, 0.4, 1.0))
+        best = min(best, last, key=lambda one: len(one.report.elements))
     monitor.step(1.0)
     return best
+
+
+def _with_room(promise: Promise, reach: float) -> SizeField:
+    """Return the field that a mesh was made for, lower around the elements that are left of it."""
+    corner = promise.mesh.points[promise.mesh.quads[promise.report.elements]]
+    longest = np.sqrt(((np.roll(corner, -1, axis=1) - corner) ** 2).sum(axis=2).max(axis=1))
+    ratio = promise.report.ratios
+    # of an element far too large, the part that its edges should have had
+    part = longest * np.minimum(1.0, LARGEST / ratio)
+    return lowered(promise.tight, corner.mean(axis=1), reach * part, np.clip(SHARE / ratio, LEAST_SHARE, SHARE))
 
 
 def _repaired(

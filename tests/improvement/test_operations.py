@@ -107,7 +107,7 @@ def test_a_turned_edge_begins_without_flat_corners(turn: int) -> None:
     old, new, spots = room[0], room[1], room[2]
     code = work.ring[int(np.argmin(np.hypot(*(work.xy - 0.5).T))), 0]
     n_old, n_new, n_spots = operations.build_swap(
-        np.int64(code), np.int64(turn), cleaner.patch, cleaner.topo[1], old, new, spots
+        np.int64(code), np.int64(turn), cleaner.patch, cleaner.topo[1], cleaner.topo[3], old, new, spots
     )
     assert (n_old, n_new, n_spots) == (2, 2, 4)
     points = work.xy.copy()
