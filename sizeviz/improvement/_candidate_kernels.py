@@ -142,7 +142,8 @@ def candidates(v, patch, topo, work, limit, found):
     """List the operations near node v that change the energy by at most ``limit``, best first; return their number.
 
     ``topo`` is (ideal, guard, boundary, lined): elements wanted at each node, whether it may not be removed or split,
-    whether it lies on the boundary, whether it may lie on an inner line. Rows of ``found`` are (kind, code, argument, change).
+    whether it lies on the boundary, whether it may lie on an inner line. Rows of ``found`` are (kind, code, argument,
+    change).
     """
     ideal, guard, boundary, _ = topo
     nodes, across, codes = work

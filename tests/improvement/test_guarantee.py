@@ -7,9 +7,9 @@ import pytest
 
 from sizeviz.conformity import shape_quality
 from sizeviz.errors import InputError
-from sizeviz.geometry import QuadMesh
+from sizeviz.geometry import Domain, QuadMesh
 from sizeviz.improvement import GuaranteeOptions, SmoothOptions, TightOptions, guaranteed, tightened
-from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, preserved
+from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, ideal_count, preserved
 from tests.improvement.squares import disturbed, uniform, unit
 
 
@@ -101,3 +101,14 @@ def test_elements_are_inserted_where_the_mesh_is_too_coarse() -> None:
     assert result.n_quads > mesh.n_quads
     assert shape_quality(result).min() > 0.5
     assert result.areas.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+def test_the_tight_field_does_not_fall_to_its_floor_where_alpha_is_small() -> None:
+    # with a radius of alpha or more it asked for six times as many elements here
+    background = BackgroundMesh.unit_square_grid(129, 129)
+    x, y = background.points.T
+    field = SizeField(background, 0.003 + np.abs(np.hypot(x - 0.5, y - 0.5) - 0.3), "ring")
+    target = preserved(field, PreserveOptions(alpha=1.0))
+    domain = Domain.unit_square()
+    assert ideal_count(tightened(field, target), domain) < 1.5 * ideal_count(target, domain)
+    assert ideal_count(tightened(field, target, TightOptions(radius=2.0)), domain) > 2.0 * ideal_count(target, domain)

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from sizeviz.geometry import QuadMesh
+from sizeviz.geometry import Domain, QuadMesh
 from sizeviz.improvement import SmoothOptions
 from sizeviz.improvement import _attempt_kernels as attempts
 from sizeviz.improvement import _operation_kernels as operations
+from sizeviz.improvement._candidate_kernels import IMPOSSIBLE, swap_change
+from sizeviz.improvement._mesh_kernels import fill_rings, find_next, sector_counts
 from sizeviz.improvement._workspace import Workspace
 from sizeviz.improvement.cleanup import Cleaner
+from sizeviz.sizing import BackgroundMesh, Grid, SizeField
 from tests.improvement.squares import disturbed, edge_uses, uniform, unit
 
 if TYPE_CHECKING:
@@ -134,3 +137,37 @@ def test_what_failed_is_tried_again_only_after_a_change_nearby() -> None:
     assert tried(cleaner, "collapse", ANY) > 0
     assert np.count_nonzero(cleaner.failed[work.quads[:, 0] >= 0]) == 0
     assert tried(cleaner, "swap", ANY) > 0
+
+
+def strip() -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return a rectangle of two squares; the edge between them joins two nodes of the boundary."""
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]])
+    return points, np.array([[0, 1, 4, 3], [1, 2, 5, 4]], dtype=np.int32)
+
+
+@pytest.mark.parametrize("line", [False, True], ids=["no line", "line"])
+def test_an_edge_between_two_fixed_nodes_turns_unless_a_line_may_lie_there(line: bool) -> None:
+    points, quads = strip()
+    lines = (np.array([[1.0, 0.0], [1.0, 1.0]]),) if line else ()
+    domain = Domain.rectangle(0.0, 0.0, 2.0, 1.0)
+    domain = Domain(domain.outer, lines=lines)
+    mesh = QuadMesh(points, quads, np.zeros(6, dtype=np.int32), np.ones(6, dtype=bool))
+    work = Workspace(mesh, domain, SizeField(BackgroundMesh.regular(Grid(0.0, 0.0, 1.0, 1.0, 3, 2)), np.ones(6)),
+                     SmoothOptions(threads=1))  # fmt: skip
+    cleaner = Cleaner(work)
+    a, b = (int(np.argmin(np.hypot(*(work.xy - p).T))) for p in ([1.0, 0.0], [1.0, 1.0]))
+    code = find_next(a, b, work.quads, work.ring, work.count)
+    change = swap_change(np.int64(code), np.int64(0), cleaner.patch, cleaner.topo)
+    assert (change == IMPOSSIBLE) == line
+
+
+@pytest.mark.parametrize(("slope", "wanted"), [(0.2, 3), (1.5, 2), (5.0, 2)])
+def test_elements_are_wanted_on_each_side_of_a_line(slope: float, wanted: int) -> None:
+    # a side below 135 degrees has room for one element, the other then for two
+    end = np.array([1.0, slope])
+    points = np.array([[0.0, 0.0], [1.0, 0.0], end, [-1.0, 0.0], 2.0 * end, [0.0, 3.0 * slope + 3.0]])
+    quads = np.array([[0, 1, 4, 2], [0, 2, 5, 3]], dtype=np.int32)
+    count, ring = np.zeros(6, dtype=np.int32), np.zeros((6, 6), dtype=np.int32)
+    fill_rings(quads, ring, count)
+    lined = np.array([True, False, True, False, False, False])
+    assert sector_counts(0, (points, quads, ring, count), lined) == wanted
