@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 
     from sizeviz.files.options import ReadOptions
 
-_MAX_MEMBERS = 1000
+MAX_MEMBERS = 1000
+"""Most members of an archive."""
+
 _MAX_HEADER = 10_000
 
 
@@ -163,7 +165,7 @@ def members(data: bytes, limit: int = MAX_BYTES) -> Iterator[tuple[str, bytes]]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             listed = archive.infolist()
-            check_nodes(len(listed), "members", _MAX_MEMBERS)
+            check_nodes(len(listed), "members", MAX_MEMBERS)
             check_available(sum(info.file_size for info in listed), limit, "the unpacked content")
             for info in listed:
                 with archive.open(info) as member:

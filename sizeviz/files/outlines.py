@@ -29,7 +29,7 @@ MAX_LOOPS = 2_000
 
 _MAX_CROSSING = 500
 _MOST_CROSSINGS = 20_000
-_MOST_NEAR = 10_000_000
+MOST_NEAR = 10_000_000
 """Most pairs of segments whose boxes overlap: each is looked at, whether they cross or not."""
 
 _TOGETHER = 64
@@ -241,7 +241,7 @@ def _check_crossings(rings: Sequence[NDArray[np.float64]]) -> None:
     for start in range(0, len(segments), _TOGETHER):
         some = segments[start : start + _TOGETHER]
         near += tree.query(some).shape[1]
-        if near > _MOST_NEAR:
+        if near > MOST_NEAR:
             raise InputError("its loops run over each other too often to be mended; draw outlines that lie apart")
         met += tree.query(some, predicate="intersects").shape[1]
         if met > 5 * len(segments) + _MOST_CROSSINGS:  # each segment meets itself and its neighbours

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from sizeviz.errors import InputError
+from sizeviz.errors import InputError, MeshingError
 from sizeviz.meshing.decomposition import Decomposition
 from sizeviz.meshing.frontal.generator import Frontal
 from sizeviz.meshing.gmsh import GmshGenerator
@@ -65,4 +65,15 @@ def generated(
     chosen = options or MeshOptions()
     if chosen.mesher not in GENERATORS:
         raise InputError(f"mesher {chosen.mesher!r} is not known; choose one of {', '.join(sorted(GENERATORS))}")
+    _refuse_too_many(domain, size, chosen)
     return GENERATORS[chosen.mesher].generate(domain, size, chosen, monitor)
+
+
+def _refuse_too_many(domain: Domain, size: SizeField, options: MeshOptions) -> None:
+    """Raise MeshingError if even elements as large as the largest size were too many: asked before anything is laid."""
+    least = domain.area / (options.scale * float(size.sizes.max())) ** 2
+    if not least <= options.max_elements:
+        raise MeshingError(
+            f"{size.label}: at mesh scale {options.scale:g} it asks for at least {least:.3g} elements, more than "
+            f"{options.max_elements}; raise the sizes, beta, the mesh scale or the limit (--max-elements)"
+        )

@@ -15,6 +15,10 @@ Distance = Literal["euclidean", "edges", "edges-as-printed"]
 """As ``LimitDistance``; along edges Algorithms 1 and 2 have line 18 mended or as printed."""
 
 
+LEAST = 1e-6
+"""Smallest alpha and beta; the largest is its reciprocal. What lies beyond is a slip, and would end in overflow."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class LimitOptions:
     """Gradient limiting.
@@ -43,9 +47,9 @@ class PreserveOptions:
     Parameters
     ----------
     alpha : float
-        Radius of the ball that must hold no smaller size, in elements, above 0. Default 2.
+        Radius of the ball that must hold no smaller size, in elements, 1e-6 to 1e6. Default 2.
     beta : float
-        Scale of the size asked for, above 0; more than 1 permits R > 1 on purpose. Default 1.
+        Scale of the size asked for, 1e-6 to 1e6; more than 1 permits R > 1 on purpose. Default 1.
     distance : {'euclidean', 'edges', 'edges-as-printed'}
         Distance that the ball is measured by; the printed variant shows the paper's erratum.
     """
@@ -59,6 +63,8 @@ class PreserveOptions:
         for name, value, example in (("alpha", self.alpha, "2"), ("beta", self.beta, "1")):
             if not (math.isfinite(value) and value > 0):
                 raise InputError(f"{name} is {value}; it must be a number above 0, such as {example}")
+            if not LEAST <= value <= 1.0 / LEAST:
+                raise InputError(f"{name} is {value}; give {LEAST:g} to {1 / LEAST:g}, such as {example}")
 
 
 def _check_distance(distance: str, known: tuple[str, ...]) -> None:

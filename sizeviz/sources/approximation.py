@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sizeviz.errors import InputError
+from sizeviz.files.convert import EXTREME
 from sizeviz.monitor import SILENT, Monitor
 from sizeviz.sizing import AnalyticSize, BackgroundMesh, SizeField
 
@@ -128,7 +129,7 @@ def _checked(function: Function, points: NDArray[np.float64], label: str) -> NDA
     Raises
     ------
     InputError
-        If one is not finite and above 0.
+        If one is not finite and above 0, or beyond all measure.
     """
     sizes = np.asarray(function(points[..., 0], points[..., 1]), dtype=np.float64)
     bad = ~(np.isfinite(sizes) & (sizes > 0))
@@ -137,6 +138,8 @@ def _checked(function: Function, points: NDArray[np.float64], label: str) -> NDA
         raise InputError(
             f"{label}: the size is {sizes[bad][0]:g} at ({x:g}, {y:g}); it must be finite and above 0 everywhere"
         )
+    if sizes.max() > EXTREME:
+        raise InputError(f"{label}: the size reaches {sizes.max():g}, beyond {EXTREME:g}; change its unit")
     return sizes
 
 

@@ -133,11 +133,18 @@ def load(
         source = found.build()
         return source if domain is None else _over(source, domain, monitor)
     path = Path(spec)
-    if not path.exists():
+    if not _exists(path):
         raise InputError(_unknown(spec))
     if path.suffix.lower() in PICTURES:
         return _from_picture(path, read_image(path), domain, image_size)
     return _from_field(path, read_field(path, domain), domain)
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a name that is too long for any file
+        return False
 
 
 def _unknown(spec: str) -> str:

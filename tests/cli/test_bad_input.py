@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from sizeviz.cli import run_command_line
+from sizeviz.files import read_mesh
 
 
 def refused(arguments: list[str], capsys: pytest.CaptureFixture, code: int = 2) -> str:
@@ -78,6 +80,7 @@ FORMULAS = {
     "zero": ("0", "above"),
     "not a number": ("0.1 + log(x - 5)", "formula"),
     "huge": ("9**9**9**9**9", "formula"),
+    "beyond all measure": ("1e300", "beyond 1e+60"),
 }
 
 
@@ -94,6 +97,8 @@ OPTIONS = {
     "alpha zero": (["--alpha", "0"], "alpha is 0"),
     "alpha negative": (["--alpha", "-1"], "alpha is -1"),
     "alpha NaN": (["--alpha", "nan"], "alpha is nan"),
+    "alpha huge": (["--alpha", "1e300"], "alpha is 1e+300; give 1e-06 to 1e+06"),
+    "beta tiny": (["--beta", "1e-9"], "beta is 1e-09; give 1e-06 to 1e+06"),
     "alpha a word": (["--alpha", "two"], "two"),
     "beta zero": (["--beta", "0"], "beta is 0"),
     "epsilon zero": (["--epsilon", "0"], "epsilon is 0"),
@@ -122,6 +127,36 @@ def test_a_mesh_too_large_is_not_begun(tmp_path: Path, capsys: pytest.CaptureFix
     said = refused(["run", "expr:0.01 + 0.1*x", "--out", str(out), "--max-elements", "10"], capsys, code=1)
     assert "10" in said and "elements" in said
     assert not out.exists()
+
+
+def test_sizes_that_ask_for_far_too_many_elements_are_refused_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    """Before the boundary is laid: it alone would take all memory."""
+    out, began = tmp_path / "out", time.process_time()
+    said = refused(["run", "expr:0.2", "--beta", "1e-6", "--out", str(out)], capsys, code=1)
+    assert "at least 2.71e+13 elements, more than 5000000; raise the sizes, beta" in said
+    assert time.process_time() - began < 5.0 and not out.exists()
+
+
+def test_a_source_with_a_name_too_long_for_a_file(capsys: pytest.CaptureFixture) -> None:
+    assert "there is no such example or file" in refused(["run", "x" * 5000, "--out", "o"], capsys)
+
+
+def test_a_domain_thinner_than_any_size_is_meshed(tmp_path: Path) -> None:
+    (tmp_path / "thin.csv").write_text("0,0\n1,0\n1,1e-9\n0,1e-9\n")
+    typed = [
+        "run",
+        "expr:0.2",
+        "--domain",
+        str(tmp_path / "thin.csv"),
+        "--out",
+        str(tmp_path / "o"),
+        "--method",
+        "none",
+    ]
+    assert run_command_line(typed) == 0
+    assert read_mesh(tmp_path / "o" / "mesh.vtu").mesh.n_quads >= 5
 
 
 def test_an_outline_that_crosses_itself(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

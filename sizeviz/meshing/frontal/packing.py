@@ -178,7 +178,7 @@ def packed(
         rows = seeds.rows[(x >= left) & (x < right) & (y >= bottom) & (y < top)]
         confined = np.concatenate([setting, [left, bottom, right, top]])
         front = _Front(
-            confined, region, rows, size, flats, int(1.3 * seeds.asked * len(rows) / len(x)) + len(rim.points)
+            confined, region, rows, size, flats, int(1.3 * seeds.asked * len(rows) / max(len(x), 1)) + len(rim.points)
         )
         front.begin(rim, at_rim)
         fronts.append(front)
