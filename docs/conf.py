@@ -76,6 +76,16 @@ def escape(app: object, what: str, name: str, obj: object, options: object, line
     lines[:] = [escaped(line) for line in lines]
 
 
+def with_commands(app: object, page: str, source: list[str]) -> None:
+    """Put every command's help, as the program itself gives it, into the page of the command line."""
+    if page == "commands":
+        from sizeviz.cli.app import app as program
+
+        told = program.generate_docs(output_format="markdown")
+        source[0] += told[told.index("**Commands**") :]
+
+
 def setup(app: object) -> None:
-    """Take docstrings before napoleon does."""
+    """Take docstrings before napoleon does, and add what the program says of itself."""
     app.connect("autodoc-process-docstring", escape, priority=100)
+    app.connect("source-read", with_commands)
