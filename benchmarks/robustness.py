@@ -317,13 +317,13 @@ def line(o: Outcome) -> str:
 def table(outcomes: list[Outcome], modes: list[str]) -> str:
     """Return what the runs came to, by mode and shape, as Markdown."""
     head = (
-        "| domain | runs | valid | wholly correct | least correct % | q min, median | q mean, median | "
+        "| domain | runs | valid | wholly correct | correct %, median | least | q min, median | least | q mean, median | "
         "count / ideal, median | above 2 × (not the boundary's) | slowest s |"
     )
     lines = []
     for mode in modes:
         mine = [o for o in outcomes if o.mode == mode]
-        lines += [f"\n{mode}: {len(mine)} runs\n", head, "|---|" + "---|" * 9]
+        lines += [f"\n{mode}: {len(mine)} runs\n", head, "|---|" + "---|" * 11]
         names = [name for name in SHAPES if any(o.domain == name for o in mine)]
         lines += [_row(name, [o for o in mine if o.domain == name]) for name in names]
         lines.append(_row("**all**", mine))
@@ -338,11 +338,12 @@ def table(outcomes: list[Outcome], modes: list[str]) -> str:
 def _row(name: str, outcomes: list[Outcome]) -> str:
     made = [o for o in outcomes if not o.error]
     if not made:
-        return f"| {name} | {len(outcomes)} | 0 | 0 | | | | | | |"
+        return f"| {name} | {len(outcomes)} | 0 | 0 |" + " |" * 8
     high = [o for o in made if o.excess > 2.0]
     cells = [
         name, len(outcomes), sum(o.valid for o in made), sum(o.correct == 100.0 for o in made),
-        f"{min(o.correct for o in made):.2f}", f"{np.median([o.quality_min for o in made]):.3f}",
+        f"{np.median([o.correct for o in made]):.2f}", f"{min(o.correct for o in made):.2f}",
+        f"{np.median([o.quality_min for o in made]):.3f}", f"{min(o.quality_min for o in made):.3f}",
         f"{np.median([o.quality_mean for o in made]):.3f}", f"{np.median([o.excess for o in made]):.2f}",
         f"{len(high)} ({sum(not o.forced for o in high)})", f"{max(o.seconds for o in outcomes):.1f}",
     ]  # fmt: skip

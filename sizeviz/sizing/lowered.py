@@ -19,7 +19,11 @@ INNER, OUTER = 6, 9
 
 
 def lowered(
-    field: SizeField, places: NDArray[np.float64], reach: NDArray[np.float64], share: NDArray[np.float64]
+    field: SizeField,
+    places: NDArray[np.float64],
+    reach: NDArray[np.float64],
+    share: NDArray[np.float64],
+    least: NDArray[np.float64],
 ) -> SizeField:
     """Return the field times a share within a distance of some places; beyond twice that distance it is as before.
 
@@ -32,7 +36,9 @@ def lowered(
     reach : (M,) float64
         Up to which distance the whole share counts, in model units.
     share : (M,) float64
-        By how much sizes are multiplied there, above 0 and at most 1; where places overlap the least counts.
+        By how much sizes are multiplied there, above 0 and at most 1; where places overlap the smallest size counts.
+    least : (M,) float64
+        Size that each place lowers none below, in model units.
     """
     if not len(places):
         return field
@@ -40,12 +46,13 @@ def lowered(
     extra = np.clip(np.vstack([places, _pattern(places, reach)]), [x0, y0], [x1, y1])
     extra = _thinned(extra, np.tile(reach, INNER + OUTER + 1))
     everywhere = np.vstack([field.background.points, extra])
-    factor = np.ones(len(everywhere))
-    near = cKDTree(everywhere).query_ball_point(places, 2.0 * reach)
-    for k, rows in enumerate(near):
+    before = np.concatenate([field.sizes, field.at(extra)])
+    sizes = before.copy()
+    for k, rows in enumerate(cKDTree(everywhere).query_ball_point(places, 2.0 * reach)):
         away = np.hypot(*(everywhere[rows] - places[k]).T) / reach[k]
-        np.minimum.at(factor, rows, share[k] + (1.0 - share[k]) * np.clip(away - 1.0, 0.0, 1.0))
-    sizes = factor * np.concatenate([field.sizes, field.at(extra)])
+        factor = share[k] + (1.0 - share[k]) * np.clip(away - 1.0, 0.0, 1.0)
+        low = np.maximum(factor * before[rows], np.minimum(before[rows], least[k]))
+        sizes[rows] = np.minimum(sizes[rows], low)
     return renewed(field, extra, sizes, np.zeros(len(field.background.triangles), dtype=bool))
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sizeviz.conformity import shape_quality
 from sizeviz.errors import MeshingError
 from sizeviz.improvement import GuaranteeOptions, GuaranteeReport, guaranteed
 from sizeviz.meshing import MeshOptions, generated
@@ -19,15 +20,23 @@ from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sizing.lowered import lowered
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from sizeviz.geometry import Domain, QuadMesh
     from sizeviz.sizing import SizeField, SizeFunction
 
-REACH = (1.5, 1.5, 2.0, 2.0, 3.0, 4.0)
+REACH = (1.5, 1.75, 2.0, 2.5, 3.0, 4.0)
 """How far around an element that is left sizes are lowered, in edges of it, before each of the meshes that follow."""
-SHARE, LEAST_SHARE = 0.88, 0.6
-"""By how much: this share, over the element's R, but no less than the second."""
+SHARE, LEAST_SHARE, MOST_SHARE = 0.92, 0.6, 0.88
+"""By how much: the first over the element's R, within the other two."""
+SPARED = 0.75
+"""Share of the least size over an element, to the power of the attempt, below which none is lowered."""
 LARGEST = 1.5
 """R above which an element's edge no longer tells how far to reach."""
+POOR, POOR_SHARE, POOR_REACH = 0.6, 0.8, 1.5
+"""Shape quality from which down sizes are lowered although R <= 1; by how much, and how far around."""
+BETTER, DEARER = 2, 1.15
+"""How often this is tried, and what it may cost in elements."""
 HOPELESS = 0.1
 """Share of wrong elements from which a mesh that is not the last is not repaired."""
 
@@ -91,31 +100,53 @@ def promised(
     """
     meshing, options = replace(meshing or MeshOptions(), scale=1.0), options or GuaranteeOptions()
     part = SubMonitor(monitor, 0.0, 0.6)
-    best = last = _repaired(domain, reference, tight, raw, replace(options, hopeless=HOPELESS), part)
+    best = _repaired(domain, reference, tight, raw, replace(options, hopeless=HOPELESS), part)
+    better = 0
     for n, reach in enumerate(REACH):
-        if best.report.holds:
+        held = best.report.holds
+        if held and (better == BETTER or not len(_poor(best))):
             break
+        better += held
         part = SubMonitor(monitor, 0.6 + 0.4 * n / len(REACH), 0.6 + 0.4 * (n + 1) / len(REACH))
-        finer = _with_room(last, reach)
         try:
+            finer = _with_room(best, reference, reach, SPARED ** (n + 1))
             mesh = generated(domain, finer, meshing, SubMonitor(part, 0.0, 0.4))
         except MeshingError:  # the finer field may pass the limit of elements; what there is stays
             break
         strict = options if n == len(REACH) - 1 else replace(options, hopeless=HOPELESS)
         last = _repaired(domain, reference, finer, mesh, strict, SubMonitor(part, 0.4, 1.0))
-        best = min(best, last, key=lambda one: len(one.report.elements))
+        dear = held and last.mesh.n_quads > DEARER * best.mesh.n_quads
+        if not dear and _demerit(last) <= _demerit(best):
+            best = last
     monitor.step(1.0)
     return best
 
 
-def _with_room(promise: Promise, reach: float) -> SizeField:
-    """Return the field that a mesh was made for, lower around the elements that are left of it."""
-    corner = promise.mesh.points[promise.mesh.quads[promise.report.elements]]
+def _demerit(promise: Promise) -> tuple[int, int]:
+    return len(promise.report.elements), len(_poor(promise))
+
+
+def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: float) -> SizeField:
+    """Return the field that a mesh was made for, lower around the elements that are left of it, or of poor shape."""
+    mesh, held = promise.mesh, promise.report.holds
+    quads = mesh.quads[_poor(promise) if held else promise.report.elements]
+    corner = mesh.points[quads]
     longest = np.sqrt(((np.roll(corner, -1, axis=1) - corner) ** 2).sum(axis=2).max(axis=1))
-    ratio = promise.report.ratios
-    # of an element far too large, the part that its edges should have had
-    part = longest * np.minimum(1.0, LARGEST / ratio)
-    return lowered(promise.tight, corner.mean(axis=1), reach * part, np.clip(SHARE / ratio, LEAST_SHARE, SHARE))
+    least = reference.min_over(mesh.points, quads)
+    ratio = longest / least
+    if held:
+        spots = POOR_REACH * least, np.full(len(quads), POOR_SHARE)
+    else:  # of an element far too large, the part that its edges should have had
+        spots = reach * longest * np.minimum(1.0, LARGEST / ratio), np.clip(SHARE / ratio, LEAST_SHARE, MOST_SHARE)
+    return lowered(promise.tight, corner.mean(axis=1), *spots, spared * least)
+
+
+def _poor(promise: Promise) -> NDArray[np.int64]:
+    """Return the elements of poor shape, but those in sharp corners, which the domain makes so."""
+    mesh = promise.mesh
+    around = np.bincount(mesh.quads.ravel(), minlength=mesh.n_points)
+    cornered = ((around == 1) & mesh.fixed)[mesh.quads].any(axis=1)
+    return np.flatnonzero((shape_quality(mesh) < POOR) & ~cornered)
 
 
 def _repaired(
