@@ -317,8 +317,8 @@ def line(o: Outcome) -> str:
 def table(outcomes: list[Outcome], modes: list[str]) -> str:
     """Return what the runs came to, by mode and shape, as Markdown."""
     head = (
-        "| domain | runs | valid | wholly correct | correct %, median | least | q min, median | least | q mean, median | "
-        "count / ideal, median | above 2 × (not the boundary's) | slowest s |"
+        "| domain | runs | valid | wholly correct | correct %, median | least | q min, median | least | "
+        "q mean, median | count / ideal, median | above 2 × (not the boundary's) | slowest s |"
     )
     lines = []
     for mode in modes:
