@@ -5,15 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from sizeviz.improvement._attempt_kernels import attempt
-from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates, splits
+from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES, candidates
 from sizeviz.improvement._jit import allocating, compiled
 from sizeviz.improvement._operation_kernels import NONE, PILLOW
 from sizeviz.improvement._worst_kernels import quad_quality
-
-TOLERATED = 1.02
-"""Squared length over its limit from which an edge calls for an insertion: limits are held 1 % below R = 1."""
-MOST_VISITS = 12
-"""How often one node is taken from the queue in one pass, so that a pass ends."""
 
 
 @compiled
@@ -47,39 +42,21 @@ def worst_around(v, patch):
 
 
 @compiled
-def too_long(v, patch, bound):
-    """Say whether an element around a node has an edge beyond its limit."""
-    xy, quads, ring, count = patch
-    for j in range(count[v]):
-        q = ring[v, j] >> 2
-        for k in range(4):
-            a, b = quads[q, k], quads[q, (k + 1) & 3]
-            if ((xy[a, 0] - xy[b, 0]) ** 2 + (xy[a, 1] - xy[b, 1]) ** 2) * bound[q] > TOLERATED:
-                return True
-    return False
-
-
-@compiled
-def wanted(v, patch, topo, marks, bound, demand):
+def wanted(v, patch, topo, marks, demand):
     """Say whether a node is worth a visit.
 
-    In clean-up it is where it is irregular; in a rescue, beside an element below the quality demanded; where
-    elements are inserted (a negative demand), at one with an edge beyond its limit.
+    In clean-up it is where it is irregular; in a rescue, beside an element below the quality demanded.
     """
     if patch[3][v] == 0 or marks[0][v] != marks[1]:
         return False
     if demand > 0.0:
         return worst_around(v, patch)[0] < demand
-    if demand < 0.0:
-        return too_long(v, patch, bound)
     return patch[3][v] != topo[0][v]
 
 
 @compiled
 def offered(v, patch, topo, work, limit, tries, demand, found):
     """List the operations that a visit tries; return their number."""
-    if demand < 0.0:
-        return min(splits(v, patch, topo, work, limit, found), tries)
     n = min(candidates(v, patch, topo, work, limit, found), tries)
     if demand > 0.0:
         # what is left when nothing else helps: room around the worst element
@@ -89,11 +66,11 @@ def offered(v, patch, topo, work, limit, tries, demand, found):
 
 
 @allocating
-def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room, tops, queue, queued, visits):
+def clean_tile(budget, most, limit, tries, patch, topo, marks, aims, rails, law, room, tops, queue, queued, visits):
     """Visit up to ``budget`` queued nodes and apply at each the first operation that stands; return how many did.
 
-    ``limit`` is the largest change of valence energy considered, ``tries`` how many operations a visit may test, fewer
-    than ``MOST_CANDIDATES``.
+    A node is visited up to ``most`` times. ``limit`` is the largest change of valence energy considered, ``tries`` how
+    many operations a visit may test, fewer than ``MOST_CANDIDATES``.
     """
     found = np.empty((MOST_CANDIDATES, 4), np.int64)
     done = 0
@@ -105,7 +82,7 @@ def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room,
         tops[3] = (tops[3] + 1) % len(queue)
         tops[4] -= 1
         queued[v] = False
-        if visits[v] >= MOST_VISITS or not wanted(v, patch, topo, marks, aims[4], law[4]):
+        if visits[v] >= most or not wanted(v, patch, topo, marks, law[4]):
             continue
         visits[v] += 1
         n = offered(v, patch, topo, room[3], limit, tries, law[4], found)
@@ -118,7 +95,7 @@ def clean_tile(budget, limit, tries, patch, topo, marks, aims, rails, law, room,
                 done += 1
                 for j in range(near):
                     w = nodes[j]
-                    if wanted(w, patch, topo, marks, aims[4], law[4]):
+                    if wanted(w, patch, topo, marks, law[4]):
                         enqueue(w, queue, queued, tops)
                 break
     return done

@@ -31,7 +31,7 @@ DOUBT = 3.0
 """Where it is, the last look takes so many times as much for possible."""
 CHUNK = 8192
 """Elements judged in one go."""
-MOVED = 0.02
+MOVED = 0.1
 """Share of its longest edge that an element may move before a formula's minimum over it is looked for again."""
 
 

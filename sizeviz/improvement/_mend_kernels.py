@@ -70,14 +70,18 @@ def limit_elements(region, n, patch, bound, share, searcher):
 
 @compiled
 def grade(region, n, patch, bound, floor):
-    """Return the demerit of elements and their lowest quality."""
+    """Return the demerit of elements and their lowest quality.
+
+    What each lacks counts: of several bad ones side by side an operation seldom mends all.
+    """
     xy, quads = patch[0], patch[1]
-    excess, quality = 0.0, 1.0
+    excess, lack, lowest = 0.0, 0.0, 1.0
     for i in range(n):
         q = region[i]
         excess += max(0.0, longest_squared(q, xy, quads) * bound[q] * (HELD / MET) ** 2 - 1.0)
-        quality = min(quality, quad_quality(q, xy, quads))
-    return EXCESS * excess + max(0.0, floor - quality), quality
+        quality = quad_quality(q, xy, quads)
+        lack, lowest = lack + max(0.0, floor - quality), min(lowest, quality)
+    return EXCESS * excess + lack, lowest
 
 
 @compiled
@@ -127,7 +131,8 @@ def trial(op, keep, patch, topo, marks, aims, rails, law, searcher, share, goal,
     """Try one operation (kind, code, argument, change of energy); return its gain and the nodes it kept moved.
 
     It is kept where it gains enough and ``keep`` says so, or where nothing is left to ask for; else it is undone, bit
-    for bit, and the number of nodes is 0. ``goal`` is (quality asked for, quality that no operation may go below).
+    for bit, and the number of nodes is 0. ``goal`` is (quality asked for, quality that no
+    operation may go below, demerit over that before which raising the qualities is not expected to make good).
     """
     old, new, spots, slots, core = room[0], room[1], room[2], room[4], room[5]
     nodes, region, births, star, kept, after = room[6], room[7], room[8], room[9], room[10], room[13]
@@ -163,9 +168,11 @@ def trial(op, keep, patch, topo, marks, aims, rails, law, searcher, share, goal,
         if n_after <= len(after):
             relax_held(nodes, n, n_core, after, n_after, patch, aims, law, rails, star, share, searcher)
             limit_elements(after, n_after, patch, aims[4], share, searcher)
-            lift_nodes(nodes, n, patch, aims, rails, star, goal[0])
-            limit_elements(after, n_after, patch, aims[4], share, searcher)
             demerit, quality = grade(after, n_after, patch, aims[4], goal[0])
+            if 0.0 < demerit < before + goal[2]:
+                lift_nodes(nodes, n, patch, aims, rails, star, goal[0])
+                limit_elements(after, n_after, patch, aims[4], share, searcher)
+                demerit, quality = grade(after, n_after, patch, aims[4], goal[0])
             gain = before - demerit - REGULAR * op[3]
             if quality < min(worst, goal[1]):
                 gain = -np.inf

@@ -36,13 +36,19 @@ MOST_NODES = 200
 MOST_REGION = 300
 WORTH = 0.5
 """Distortion that one unit of valence energy is worth."""
+GAIN = 1e-3
+"""Least gain that an operation must bring."""
 LOWEST_QUALITY = 0.55
 LARGEST_STRETCH = 2.2
 """Longest edge over target size that an operation may leave, unless it was larger before."""
 RESCUES = ((0.6, 2.2), (0.4, 3.0), (0.3, 3.0), (0.2, 4.0), (0.05, 8.0), (1e-3, 1e3))
 """Quality demanded of a rescue and the longest edge over target size it may leave, ever more modest."""
-MOST_SPLIT = 12
-"""Change of valence energy that the split of a node may bring; 4 at a regular one."""
+TRIES = 12
+"""Operations that a visit of the wide clean-up may try."""
+MOST_VISITS, FEW_VISITS = 12, 5
+"""How often one node is taken from the queue in one pass, so that a pass ends; the second where losses are allowed."""
+LOSS = 0.6
+"""Distortion that an operation may cost which changes no valence energy, but moves a pair of irregular nodes."""
 BUDGET = 1024
 """Nodes visited between two looks at the monitor."""
 
@@ -109,6 +115,7 @@ class Cleaner:
         self.zone = np.concatenate([zone, np.repeat(np.arange(n_tiles, dtype=np.int32), spare)])
         self.seen = np.zeros(n + more, dtype=np.int64), np.zeros(len(work.quads), dtype=np.int64)
         self.awake, self.failed = np.zeros(n + more, dtype=np.bool_), np.zeros(len(work.quads), dtype=np.int16)
+        self.loss = 0.0
         self.queued, self.visits = np.zeros(n + more, dtype=np.bool_), np.zeros(n + more, dtype=np.int32)
         first_quad = len(work.quads) - more
         self.tiles = [
@@ -119,8 +126,15 @@ class Cleaner:
             for t in range(n_tiles)
         ]  # fmt: skip
 
-    def run(self, limit: int, tries: int, monitor: Monitor = SILENT) -> int:
-        """Make one pass with operations that change the valence energy by at most ``limit``; return how many stood."""
+    def run(self, limit: int, tries: int, monitor: Monitor = SILENT, *, loss: float = 0.0) -> int:
+        """Make one pass with operations that change the valence energy by at most ``limit``; return how many stood.
+
+        Each must gain a little, or may cost up to ``loss``.
+        """
+        law = (self.work.objective, WORTH, LOWEST_QUALITY, LARGEST_STRETCH**2, 0.0, -loss if loss > 0.0 else GAIN)
+        if loss != self.loss:
+            self.loss = loss
+            self.failed[:] = 0
         for tile in self.tiles:
             for first, last in ((tile.first, tile.last), (tile.spare.start, tile.spare.stop)):
                 _cleanup_kernels.seed_queue(
@@ -138,7 +152,7 @@ class Cleaner:
 
             def visit(first: int, last: int, waiting: list[_Tile] = waiting) -> None:
                 for tile in waiting[first:last]:
-                    done[tile.number] += self._visit(tile, limit, tries)
+                    done[tile.number] += self._clean(tile, limit, tries, law)
 
             run_chunks(visit, len(waiting), chunk=1, threads=self.work.options.threads, monitor=part,
                        message="cleaning up")  # fmt: skip
@@ -148,16 +162,12 @@ class Cleaner:
     def _marks(self, tile: _Tile) -> tuple[Any, ...]:
         return self.zone, tile.number, *self.seen, self.awake, self.failed
 
-    def _visit(self, tile: _Tile, limit: int, tries: int) -> int:
-        law = (self.work.objective, WORTH, LOWEST_QUALITY, LARGEST_STRETCH**2, 0.0)
-        return self._clean(tile, limit, tries, law)
-
     def _clean(self, tile: _Tile, limit: int, tries: int, law: tuple[Any, ...]) -> int:
         work = self.work
         aims = (work.size.sampler, work.sizes, work.inv, work.hint, work.bound, work.scale**2)
         return _cleanup_kernels.clean_tile(
-            BUDGET, limit, tries, self.patch, self.topo, self._marks(tile), aims, work.rails, law,
-            tile.room, tile.tops, tile.queue, self.queued, self.visits,
+            BUDGET, FEW_VISITS if law[5] < 0.0 else MOST_VISITS, limit, tries, self.patch, self.topo,
+            self._marks(tile), aims, work.rails, law, tile.room, tile.tops, tile.queue, self.queued, self.visits,
         )  # fmt: skip
 
     def rescue(self, nodes: NDArray[np.integer], demand: float, stretch: float) -> int:
@@ -165,22 +175,13 @@ class Cleaner:
 
         ``stretch`` is the longest edge over the target size that it may leave. The cleaner must be ``whole``.
         """
-        return self._visit_some(nodes, DEGENERATE // 2, (self.work.objective, 0.0, 0.0, stretch**2, demand))
-
-    def insert(self, nodes: NDArray[np.integer], lowest: float) -> int:
-        """Split nodes beside edges beyond their limits, each split one element more; return how many stood.
-
-        No quality falls below ``lowest``, unless it was lower before. The cleaner must be ``whole``.
-        """
-        return self._visit_some(nodes, MOST_SPLIT, (self.work.objective, 0.0, 0.0, 0.0, -lowest))
-
-    def _visit_some(self, nodes: NDArray[np.integer], limit: int, law: tuple[Any, ...]) -> int:
+        law = (self.work.objective, 0.0, 0.0, stretch**2, demand, 0.0)
         tile = self.tiles[0]
         tile.queue[: len(nodes)], self.queued[nodes] = nodes, True
         tile.tops[3:5] = 0, len(nodes)
         done = 0
         while tile.tops[4] > 0:
-            done += self._clean(tile, limit, MOST_CANDIDATES - 1, law)
+            done += self._clean(tile, DEGENERATE // 2, MOST_CANDIDATES - 1, law)
         return done
 
 
@@ -255,11 +256,18 @@ def rescue(work: Workspace, below: float) -> int:
 
 
 def clean_wide(work: Workspace, rounds: int, monitor: Monitor = SILENT) -> None:
-    """Apply operations that do not raise the valence energy, with three sweeps after each round."""
+    """Apply operations that do not raise the valence energy, with three sweeps after each round.
+
+    What these leave are pairs of irregular nodes that no single operation brings nearer to one another without a loss
+    of shape. In every round but the last they may move at one: where they meet others they vanish, and the next round
+    makes good what was lost.
+    """
     for n in range(rounds):
         part = SubMonitor(monitor, n / rounds, (n + 1) / rounds)
         cleaner = Cleaner(work, shift=n % 2 == 0)
-        cleaner.run(-1, 6, SubMonitor(part, 0.0, 0.2))
-        cleaner.run(0, 4, SubMonitor(part, 0.2, 0.8))
+        cleaner.run(-1, TRIES, SubMonitor(part, 0.0, 0.1))
+        cleaner.run(0, TRIES, SubMonitor(part, 0.1, 0.5))
+        if n < rounds - 1:
+            cleaner.run(0, TRIES, SubMonitor(part, 0.5, 0.8), loss=LOSS)
         work.compact()
         work.sweep(3, SubMonitor(part, 0.8, 1.0))

@@ -30,8 +30,10 @@ WEIGHT = 100.0
 AWARE_SWEEPS = 12
 FEW = 0.005
 """Share of wrong elements below which smoothing around them is cheaper than everywhere."""
-REPAIRS = 2
+REPAIRS = 4
 """Rounds of smoothing before elements are inserted where edges are still too long."""
+RAISED_REPAIRS = 2
+"""The same between two attempts to raise the worst elements, which more would squeeze again."""
 MOST_REPAIRS = 8
 """Most rounds of it; the weight is then beyond what numbers can hold against the rest of the objective."""
 PATIENCE = 3
@@ -223,13 +225,16 @@ def _conformed(work: Workspace, judge: Judge, mender: Mender, rounds: int, monit
 def _raised(judge: Judge, mender: Mender, floor: float, passes: int) -> None:
     """Raise the worst elements, first by moves, then by operations, and make no element wrong."""
     work = judge.work
-    for _ in range(passes):
+    for n in range(passes + 1):
         judge.limit(judge.alive, 0.9999)
         judge.guarded(lambda: work.lift(floor), floor)
         low = np.flatnonzero(judge.quality < floor)
-        if not len(low) or not mender.mend(judge.rings(low, 1), floor, LOWEST, True):
+        if n == passes or not len(low):
             break
-        _repair(work, judge, REPAIRS, SILENT)
+        quick = n == 0
+        if not mender.mend(judge.rings(low, 1), floor, LOWEST, True, quick=quick) and not quick:
+            break
+        _repair(work, judge, RAISED_REPAIRS, SILENT)
 
 
 def _repair(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> None:

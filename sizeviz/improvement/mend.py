@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 BUDGET = 64
 """Nodes visited between two looks at the monitor."""
-MOST_CHANGE = 8
-"""Largest change of valence energy that an operation may bring; the split of a regular node brings 4."""
+LARGEST_CHANGE, SMALL_CHANGE = 8, 4
+"""Change of valence energy that an operation may bring; the split of a regular node brings 4."""
+HOPE = 0.3
+"""Demerit over that before which raising the qualities around an operation seldom makes good."""
 
 
 class Mender:
@@ -44,7 +46,14 @@ class Mender:
         self.judge.lengthen()
 
     def mend(
-        self, nodes: NDArray[np.integer], floor: float, lowest: float, every: bool, monitor: Monitor = SILENT
+        self,
+        nodes: NDArray[np.integer],
+        floor: float,
+        lowest: float,
+        every: bool,
+        monitor: Monitor = SILENT,
+        *,
+        quick: bool = False,
     ) -> int:
         """Apply, at each node that has a wrong or bad element, the operation that helps most; return how many stood.
 
@@ -60,6 +69,8 @@ class Mender:
             Whether all operations are tried; otherwise only those that insert an element.
         monitor : Monitor
             Told of progress.
+        quick : bool
+            Whether to leave out the operations that seldom stand.
         """
         work, judge = self.work, self.judge
         if self.cleaner.tiles[0].tops[:2].min() < SPARE:
@@ -71,14 +82,17 @@ class Mender:
         marks = (cleaner.zone, tile.number, *cleaner.seen)
         law = (work.objective, _mend_kernels.EDGE_WEIGHT)
         changed, failed = np.zeros(len(work.xy), dtype=np.bool_), np.zeros(len(work.quads), dtype=np.int16)
+        change, goal = LARGEST_CHANGE, (floor, lowest, np.inf)
+        if quick:
+            change, goal = SMALL_CHANGE, (floor, lowest, HOPE)
         which = _mend_kernels.ALL if every else _mend_kernels.SPLITS
         listed = np.ascontiguousarray(nodes, dtype=np.int64)
         done = 0
         for first in range(0, len(listed), BUDGET):
             monitor.step(first / len(listed), "mending elements")
             done += _mend_kernels.mend(
-                listed, first, min(first + BUDGET, len(listed)), which, MOST_CHANGE, work.patch, cleaner.topo, marks,
-                aims, work.rails, law, judge.field.searcher, judge.share, (floor, lowest),
+                listed, first, min(first + BUDGET, len(listed)), which, change, work.patch, cleaner.topo, marks,
+                aims, work.rails, law, judge.field.searcher, judge.share, goal,
                 (changed, failed), tile.room, tile.tops,
             )  # fmt: skip
         if done:

@@ -7,7 +7,7 @@ import pytest
 
 from sizeviz.conformity import shape_quality
 from sizeviz.geometry import QuadMesh
-from sizeviz.improvement import SmoothOptions
+from sizeviz.improvement import SmoothOptions, _mend_kernels
 from sizeviz.improvement._conform import Judge
 from sizeviz.improvement._workspace import Workspace
 from sizeviz.improvement.mend import Mender
@@ -67,6 +67,14 @@ def test_a_corner_that_moves_cannot_open_gets_another_connectivity() -> None:
     assert Mender(work, judge).mend(judge.rings(low, 1), 0.75, 0.5, True) > 0
     assert shape_quality(work.result()).min() > 0.75
     assert not len(judge.wrong)
+
+
+def test_each_of_several_bad_elements_counts() -> None:
+    work, judge = prepared(uniform(0.2), disturbed(8, 0.1, 1))
+    rows = np.arange(5)
+    demerit, lowest = _mend_kernels.grade(rows, 5, work.patch, np.zeros(len(work.quads)), 1.0)
+    assert demerit == pytest.approx((1.0 - judge.quality[rows]).sum(), rel=1e-12)
+    assert lowest == judge.quality[rows].min()
 
 
 def test_nothing_is_changed_where_nothing_is_asked() -> None:

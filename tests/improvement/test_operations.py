@@ -44,7 +44,7 @@ def tried(cleaner: Cleaner, kind: str, worth: float) -> int:
     code = work.ring[int(np.argmin(away)), 0]
     aims = (work.size.sampler, work.sizes, work.inv, work.hint, work.bound, work.scale**2)
     number = getattr(operations, kind.upper())
-    law = (work.objective, worth, 0.0, 1e9, 0.0)
+    law = (work.objective, worth, 0.0, 1e9, 0.0, 1e-3)
     argument = np.int64(2 if kind == "open" else 0)
     return attempts.attempt(
         number, np.int64(code), argument, np.int64(-1), cleaner.patch, cleaner.topo, cleaner._marks(tile), aims,
