@@ -76,6 +76,12 @@ def escape(app: object, what: str, name: str, obj: object, options: object, line
     lines[:] = [escaped(line) for line in lines]
 
 
+def out_of_the_way(app: object, page: str, source: list[str]) -> None:
+    """Keep single decisions out of the list of pages: their own page lists them."""
+    if page.startswith("adr/0"):
+        source[0] = f"---\norphan: true\n---\n{source[0]}"
+
+
 def with_commands(app: object, page: str, source: list[str]) -> None:
     """Put every command's help, as the program itself gives it, into the page of the command line."""
     if page == "commands":
@@ -89,3 +95,4 @@ def setup(app: object) -> None:
     """Take docstrings before napoleon does, and add what the program says of itself."""
     app.connect("autodoc-process-docstring", escape, priority=100)
     app.connect("source-read", with_commands)
+    app.connect("source-read", out_of_the_way)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -78,15 +79,16 @@ def _planned(source: str, options: PipelineOptions, turn: TurnOptions, monitor: 
     from sizeviz.cli.session import prepared
     from sizeviz.errors import InputError
     from sizeviz.scene.film_plans import adaptive_film, alpha_film
+    from sizeviz.sizing.options import LEAST
     from sizeviz.study import Study
     from sizeviz.study.storage import SUFFIX, read_study
 
-    if Path(source).is_dir():
+    if os.path.isdir(source):  # of a name too long for any path it says no, where Path would raise
         return adaptive_film(source, dark=turn.dark)
     if not 1 <= turn.takes <= 1000:
         raise InputError(f"takes is {turn.takes}; give 1 to 1000")
-    if not (turn.first > 0 and turn.last > 0):
-        raise InputError(f"alpha turns from {turn.first} to {turn.last}; both must be above 0")
+    if not all(LEAST <= alpha <= 1.0 / LEAST for alpha in (turn.first, turn.last)):
+        raise InputError(f"alpha turns from {turn.first} to {turn.last}; give {LEAST:g} to {1 / LEAST:g}")
     alphas = [float(alpha) for alpha in np.geomspace(turn.first, turn.last, turn.takes)]
     if Path(source).suffix.lower() == SUFFIX:
         study = read_study(source).study

@@ -74,7 +74,8 @@ class PipelineOptions(FieldOptions):
     mesher
         Who makes the raw mesh.
     mesh_scale
-        Element size asked for, relative to the processed field; the default is calibrated, and serves every method.
+        Element size asked for, relative to the processed field; the default is calibrated, and serves every method
+        but the guarantee, which finds its own.
     preset
         direct follows the field node by node; fast splits a mesh of twice the size.
     smooth

@@ -6,6 +6,7 @@ iteration, so that a long process needs no more memory than a short one, and can
 
 from __future__ import annotations
 
+import hashlib
 import math
 import time
 from dataclasses import dataclass, field, replace
@@ -19,7 +20,7 @@ from sizeviz.errors import InputError
 from sizeviz.files import output_folder, read_mesh, write_mesh
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.study.backgrounds import Sampling, background_of, uniform_mesh
-from sizeviz.study.evolution import Evolution, Iteration, read_evolution, write_evolution
+from sizeviz.study.evolution import FINGERPRINT, Evolution, Iteration, read_evolution, write_evolution
 from sizeviz.study.options import StudyOptions
 from sizeviz.study.pipeline import GUARANTEED, METHODS, run
 from sizeviz.study.report import mesh_arrays, options_as_typed
@@ -145,7 +146,8 @@ def adapted(source: Source, options: AdaptOptions, out: str | Path, monitor: Mon
 
 
 def _taken_up(source: Source, options: AdaptOptions, folder: Path) -> Evolution:
-    fresh = Evolution(source=source.name, options=options.as_recorded(), limit=options.criterion[1])
+    recorded = {**options.as_recorded(), FINGERPRINT: _fingerprint(source)}
+    fresh = Evolution(source=source.name, options=recorded, limit=options.criterion[1])
     found = read_evolution(folder)
     if found is None:
         return fresh
@@ -158,6 +160,14 @@ def _taken_up(source: Source, options: AdaptOptions, folder: Path) -> Evolution:
     if any(math.isnan(row.strict_ratio) for row in found.iterations):
         write_evolution(folder, whole)
     return whole
+
+
+def _fingerprint(source: Source) -> str:
+    """Return what tells a source from another of its name: of its sizes and its domain, to single precision."""
+    found = hashlib.sha256()
+    for array in (*source.domain.loops, *source.domain.lines, source.field.background.points, source.field.sizes):
+        found.update(np.ascontiguousarray(array, dtype="<f4").tobytes())
+    return found.hexdigest()[:16]
 
 
 def _brought_up_to_date(row: Iteration, folder: Path) -> Iteration:

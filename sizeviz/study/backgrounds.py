@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from sizeviz.errors import MeshingError
 from sizeviz.geometry import QuadMesh
 from sizeviz.meshing import generated
 from sizeviz.monitor import SILENT, Monitor
@@ -41,9 +42,20 @@ def background_of(mesh: QuadMesh, reference: SizeFunction, sampling: Sampling = 
 
 
 def uniform_mesh(domain: Domain, cells: int, options: MeshOptions, monitor: Monitor = SILENT) -> QuadMesh:
-    """Return a mesh of equal elements, ``cells`` along the domain's longer side; of a rectangle, a grid of squares."""
+    """Return a mesh of equal elements, ``cells`` along the domain's longer side; of a rectangle, a grid of squares.
+
+    Raises
+    ------
+    MeshingError
+        If it would have more than ``options.max_elements`` elements.
+    """
     x0, y0, x1, y1 = domain.bounds
     h = max(x1 - x0, y1 - y0) / cells
+    if domain.area / h / h > options.max_elements:
+        raise MeshingError(
+            f"the first mesh would have {domain.area / h / h:.3g} elements, {cells} along its longer side, more than "
+            f"{options.max_elements}; begin with fewer (--cells), or raise the limit (--max-elements)"
+        )
     if domain.holes or len(domain.outer) != 4 or not np.isclose(domain.area, (x1 - x0) * (y1 - y0), rtol=1e-12):
         box = BackgroundMesh.regular(Grid(x0, y0, (x1 - x0) / 2, (y1 - y0) / 2, 3, 3))
         return generated(domain, SizeField(box, np.full(9, h), label="uniform"), replace(options, scale=1.0), monitor)

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 RECORD = "evolution.json"
 """The record's name in the folder of the process."""
 
+FINGERPRINT = "fingerprint"
+"""Among the options, what tells one source from another of the same name; older records do not have it."""
+
 LATER: tuple[str, ...] = ("strict_ratio", "strict_correct")
 """Columns that the records of older versions do not have; there they are not a number until the meshes are judged."""
 
@@ -98,9 +101,13 @@ class Evolution:
         """Return what makes the other process another one, a few words each; none if it is the same, however far."""
         mine = {"source": self.source, "limit": self.limit, **self.options}
         others = {"source": other.source, "limit": other.limit, **other.options}
-        names = dict.fromkeys([*mine, *others])
-        kept, asked = ([values.get(name, "not recorded") for name in names] for values in (mine, others))
-        return [f"{n.replace('_', '-')} {a}, not {b}" for n, a, b in zip(names, kept, asked, strict=True) if a != b]
+        prints = {values.pop(FINGERPRINT, None) for values in (mine, others)} - {None}
+        found = []
+        for name in dict.fromkeys([*mine, *others]):
+            kept, asked = (values.get(name, "not recorded") for values in (mine, others))
+            if kept != asked:
+                found.append(f"{name.replace('_', '-')} {kept}, not {asked}")
+        return [*found, *(["other sizes, or another domain"] if len(prints) > 1 else [])]
 
 
 def write_evolution(folder: Path, evolution: Evolution) -> None:

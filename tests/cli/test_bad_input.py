@@ -139,8 +139,13 @@ def test_sizes_that_ask_for_far_too_many_elements_are_refused_at_once(
     assert time.process_time() - began < 5.0 and not out.exists()
 
 
-def test_a_source_with_a_name_too_long_for_a_file(capsys: pytest.CaptureFixture) -> None:
-    assert "there is no such example or file" in refused(["run", "x" * 5000, "--out", "o"], capsys)
+@pytest.mark.parametrize("typed", [["run", "--out", "o"], ["film", "-o", "o.gif"]])
+def test_a_source_with_a_name_too_long_for_a_file(typed: list[str], capsys: pytest.CaptureFixture) -> None:
+    assert "there is no such example or file" in refused([*typed, "x" * 5000], capsys)
+
+
+def test_a_film_that_turns_to_no_alpha(capsys: pytest.CaptureFixture) -> None:
+    assert "alpha turns from 1.0 to inf" in refused(["film", "ring", "-o", "o.gif", "--last", "inf"], capsys)
 
 
 def test_a_domain_thinner_than_any_size_is_meshed(tmp_path: Path) -> None:

@@ -61,6 +61,14 @@ def test_links_lead_somewhere(page):
         assert (page.parent / made).exists(), target
 
 
+def test_every_decision_has_its_number_and_is_listed():
+    listed = (DOCS / "adr" / "README.md").read_text(encoding="utf-8")
+    for number, page in enumerate(sorted((DOCS / "adr").glob("0*.md")), 1):
+        heading = page.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
+        assert page.name.startswith(f"{number:04d}-") and heading.startswith(f"{number}. ")
+        assert f"[{heading.partition('. ')[2]}]({page.name})" in listed
+
+
 def test_every_page_is_in_the_table_of_contents():
     index = (DOCS / "index.md").read_text(encoding="utf-8")
     for folder in ("howto", "algorithms"):

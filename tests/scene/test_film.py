@@ -81,7 +81,7 @@ def test_an_adaptive_process_is_filmed_from_its_folder(tmp_path: Path) -> None:
         (["ring", "-o", "f.avi"], "no film format for '.avi'; use .mp4 or .gif"),
         (["ring", "-o", "f.gif", "--width", "10"], "width is 10"),
         (["ring", "-o", "f.gif", "--takes", "0"], "takes is 0"),
-        (["ring", "-o", "f.gif", "--first", "0"], "both must be above 0"),
+        (["ring", "-o", "f.gif", "--first", "0"], "alpha turns from 0.0 to 6.0; give 1e-06 to 1e+06"),
         ([".", "-o", "f.gif"], "holds no adaptive process"),
     ],
 )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sizeviz.conformity import judged
-from sizeviz.errors import Cancelled, InputError
+from sizeviz.errors import Cancelled, InputError, MeshingError
 from sizeviz.files import read_mesh
 from sizeviz.geometry import Domain, QuadMesh
 from sizeviz.meshing import MeshOptions
@@ -107,6 +107,18 @@ def test_a_finished_process_is_not_run_again(finished):
     assert written == {path.name: path.stat().st_mtime_ns for path in folder.iterdir()}
 
 
+def test_another_source_of_the_same_name_is_refused(finished):
+    folder, _ = finished
+    doubled = replace(ring_source(), field=ring_source().field.with_sizes(2 * ring_source().field.sizes))
+    with pytest.raises(InputError, match=r"another adaptive process \(other sizes, or another domain\)"):
+        adapted(doubled, options(), folder)
+
+
+def test_a_first_mesh_too_large_is_not_begun(tmp_path):
+    with pytest.raises(MeshingError, match=r"1e\+16 elements, 100000000 along its longer side.*--cells"):
+        adapted(ring_source(), options(cells=100_000_000), tmp_path / "a")
+
+
 def test_another_process_is_refused(finished):
     folder, _ = finished
     words = r"another adaptive process \(method size-preserving, not gradient-limiting\); choose another --out"
@@ -123,6 +135,7 @@ def test_a_record_of_an_older_version_is_taken_up_with_what_it_lacks(finished, t
         {name: value for name, value in row.items() if not name.startswith("strict")}
         for row in content["iterations"][:3]
     ]
+    del content["options"]["fingerprint"]
     (tmp_path / "evolution.json").write_text(json.dumps(content))
     assert np.isnan(read_evolution(tmp_path).iterations[1].strict_ratio)
     again = adapted(ring_source(), options(), tmp_path)
