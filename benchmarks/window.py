@@ -52,7 +52,6 @@ def open_window(folder: Path, engine=None, size=(1500, 940)):
 
     from sizeviz.app.engine import PipelineEngine
     from sizeviz.app.launch import SWITCH_SECONDS, application
-    from sizeviz.app.panes.canvas import preload
     from sizeviz.app.settings import Settings
     from sizeviz.app.window import MainWindow
 
@@ -63,8 +62,8 @@ def open_window(folder: Path, engine=None, size=(1500, 940)):
     window.show()
     window.activateWindow()
     person = Person(window)
-    loading = preload()
-    person.wait(lambda: not loading.is_alive(), 60)
+    window.preparation.start()
+    person.wait(lambda: window.preparation.is_done, 60)
     person.rest(400)
     return window, person
 

@@ -7,9 +7,12 @@ so that a kernel's many steps cost nothing.
 from __future__ import annotations
 
 import logging
+import os
+import sys
 import threading
 import time
 import traceback
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +29,9 @@ POLL_MS = 60
 """How often progress is looked at while a job runs; nothing is polled while none does."""
 
 LOG = logging.getLogger(__name__)
+
+WORKER_NICENESS = 10
+"""How far the worker stands back behind the window, as ``nice`` counts."""
 
 
 class JobMonitor:
@@ -93,11 +99,22 @@ class _Runnable(QRunnable):
 
     def run(self) -> None:
         """Do the work; whatever happens, say so once."""
+        _give_way()
         outcome, payload = _outcome(self._job)
         try:
             self._bridge.ended.emit(self._job, outcome, payload)
         except RuntimeError:  # the window is gone
             LOG.debug("%s ended after the window was closed", self._job.title)
+
+
+def _give_way() -> None:
+    """Let the window go first when both want a core, and with it its drawing threads.
+
+    Threads that the worker starts are as patient as it is. Elsewhere than on Linux a priority is the whole process's.
+    """
+    if sys.platform == "linux":
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), WORKER_NICENESS)
 
 
 def _outcome(job: Job) -> tuple[str, Any]:

@@ -22,8 +22,8 @@ LOG = logging.getLogger(__name__)
 GRAB_SIZE = (1600, 1000)
 """Size of the window while it is photographed."""
 
-PRELOAD_MS = 150
-"""How long after the window is shown VTK begins to be loaded."""
+PREPARE_MS = 150
+"""How long after the window is shown what it will need begins to be loaded."""
 
 SWITCH_SECONDS = 0.002
 """How long the worker may hold the interpreter before the window gets its turn."""
@@ -51,7 +51,6 @@ def launch(source: str | None, grab: str | None) -> int:
     from qtpy.QtCore import QTimer
 
     from sizeviz.app.engine import PipelineEngine
-    from sizeviz.app.panes.canvas import preload
     from sizeviz.app.signals import EndRequests
     from sizeviz.app.window import MainWindow
 
@@ -61,7 +60,7 @@ def launch(source: str | None, grab: str | None) -> int:
     if grab is not None:
         window.resize(*GRAB_SIZE)
     window.show()
-    QTimer.singleShot(PRELOAD_MS, preload)
+    QTimer.singleShot(PREPARE_MS, window.preparation.start)
     code = [0]
     if source is not None:
         window.controller.open_source(source)
@@ -130,8 +129,7 @@ def _grab_when_settled(window: MainWindow, path: str, code: list[int]) -> None:
     from qtpy.QtCore import QTimer
 
     def grab() -> None:
-        if window.turns.is_busy:
-            window.turns.finish()
+        if window.is_settling:
             QTimer.singleShot(300, grab)
             return
         if not window.grab().save(path):

@@ -41,13 +41,14 @@ from sizeviz.app.panels.source import SourcePanel
 from sizeviz.app.panes.board import PaneBoard
 from sizeviz.app.panes.canvas import GLCanvas
 from sizeviz.app.panes.remembered import view_values
+from sizeviz.app.prepare import Preparation
 from sizeviz.app.settings import Settings
 from sizeviz.app.theme import THEMES, Theme, apply_theme
 from sizeviz.app.turns import Turns
 from sizeviz.app.welcome import Welcome
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Hashable
 
     from qtpy.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QResizeEvent
 
@@ -60,9 +61,6 @@ SIDEBAR = 306
 
 INSPECTOR = 372
 """Width of the judgement's panels."""
-
-LARGE = 40_000
-"""Studies with this many elements are shown pane by pane, so that the window never stands still for all of them."""
 
 
 class MainWindow(QMainWindow):
@@ -102,6 +100,8 @@ class MainWindow(QMainWindow):
         self._build_pipeline()
         self._build_inspector()
         self._build_bars()
+        panels = [*self.sections, self.statistics, *self.histograms, self.worst, self.tabs, self.progress]
+        self.preparation = Preparation(self.board, panels, self)
         self.tool = PaintTool(self.controller, self.board, self.paint)
         self.inspector = Inspector(self.controller, self.board, self.readout, self.worst)
         self.palette_ = CommandPalette(self.actions_, self)
@@ -243,22 +243,21 @@ class MainWindow(QMainWindow):
     def show_study(self, study: Study) -> None:
         """Bring panels and panes to a study."""
         if self.pages.currentWidget() is self.welcome:
-            self.pages.setCurrentWidget(self.board)
-            docks = [self.pipeline_dock, self.inspector_dock]
-            for dock in docks:
-                dock.show()
-            if not self._laid_out:
-                self.resizeDocks(docks, [SIDEBAR, INSPECTOR], Qt.Orientation.Horizontal)
+            docks = {dock: dock.show for dock in (self.pipeline_dock, self.inspector_dock)}
+            self.turns.take({**docks, self.board: self._leave_welcome})
         self.show_title()
         self.source.show_source(study.source)
         for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):
             panel.show_options(study.options)
-        panes = [partial(self.board.refresh_pane, pane) for pane in self.board.visible_panes]
-        self.turns.take([*panes, self.show_judgement])
-        elements = sum(run.mesh.n_quads for run in study.runs.values() if run.mesh is not None)
-        if elements < LARGE and all(pane.surface.canvas.is_ready for pane in self.board.visible_panes):
-            self.turns.finish()
+        self.board.refresh()
+        self.show_judgement()
         self.show_state()
+
+    def _leave_welcome(self) -> None:
+        if not self._laid_out:
+            docks = [self.pipeline_dock, self.inspector_dock]
+            self.resizeDocks(docks, [SIDEBAR, INSPECTOR], Qt.Orientation.Horizontal)
+        self.pages.setCurrentWidget(self.board)
 
     def show_title(self) -> None:
         """Name the study's file, or what it was opened from, and mark unsaved changes."""
@@ -270,11 +269,26 @@ class MainWindow(QMainWindow):
     def show_judgement(self) -> None:
         """Bring table, histograms and the worst elements to the active pane."""
         pane = self.board.active
-        methods = tuple(dict.fromkeys([*self.board.methods]))
-        self.statistics.show_study(self.controller.study, methods, pane.view.measure)
-        for histogram in self.histograms:
-            histogram.show_subject(pane.subject, pane.view.method, pane.view)
-        self.worst.show_subject(pane.subject, pane.view.method, pane.view.measure)
+        method, view = pane.view.method, pane.view
+        methods, study = self.board.methods, self.controller.study
+        subject = self.controller.displayed(method).subject
+        pieces: dict[Hashable, Callable[[], object]] = {
+            panel: partial(panel.show_subject, subject, method, view) for panel in self.histograms
+        }
+        self.turns.take(
+            {
+                self.statistics: partial(self.statistics.show_study, study, methods, view.measure),
+                self.worst: partial(self.worst.show_subject, subject, method, view.measure),
+                **pieces,
+            }
+        )
+        if self.board.is_light:
+            self.turns.finish()
+
+    @property
+    def is_settling(self) -> bool:
+        """Whether anything that was asked for is still on its way to the screen."""
+        return self.turns.is_busy or self.board.is_drawing
 
     def show_state(self) -> None:
         """Bring undo, redo, Apply and the badges to what is possible now."""
@@ -322,6 +336,7 @@ class MainWindow(QMainWindow):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Stop the worker, remember the layout, free VTK; in this order, so that nothing is used after it is gone."""
         self.turns.drop()
+        self.preparation.stop()
         self.controller.jobs.shut_down()
         self.lessons.close()
         self.files.close()

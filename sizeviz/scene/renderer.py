@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +11,8 @@ import numpy as np
 from sizeviz.scene.spec import CellLayer, Color, ImageLayer, Layer, LineLayer, SceneSpec, TriangleLayer
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from sizeviz.scene.camera import Camera2D
@@ -18,6 +22,27 @@ EDGE_OPACITY = 0.35
 
 LIFT = 1e-6
 """How far each layer lies above the one below, relative to the height of view; seen from above it is invisible."""
+
+SLICE = 16_384
+"""Cells of one actor. Larger layers become several, so that a window can draw them in pieces, a turn for each."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A run of a layer's cells: rows ``start`` to ``stop``, VTK's copy of them, and the actor that draws it."""
+
+    start: int
+    stop: int
+    data: Any
+    actor: Any
+
+
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """A layer and what draws it."""
+
+    layer: Layer
+    parts: tuple[_Part, ...]
 
 
 class Renderer:
@@ -31,7 +56,7 @@ class Renderer:
 
     def __init__(self, plotter: Any) -> None:
         self._plotter = plotter
-        self._shown: dict[str, tuple[Layer, Any, Any]] = {}
+        self._shown: dict[str, _Shown] = {}
         self.spec: SceneSpec | None = None
         self._edges = False
         plotter.camera_set = True  # it is set by ``look``; asked for unset, pyvista would fit it and draw
@@ -61,11 +86,13 @@ class Renderer:
         gone = self._shown.keys() - {layer.name for layer in spec.layers}
         for name in gone:
             self._remove(name)
-        for order, layer in enumerate(spec.layers):
-            differs |= self._show_layer(layer, order)
+        for layer in spec.layers:
+            differs |= self._show_layer(layer)
         if edges is None:
             edges = any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers)
         differs |= self.show_edges(edges)
+        self._shown = {layer.name: self._shown[layer.name] for layer in spec.layers}  # back to front, old and new
+        self._lift(2.0 * self._plotter.camera.GetParallelScale())
         self.spec = spec
         return differs or bool(gone)
 
@@ -77,39 +104,89 @@ class Renderer:
         vtk_camera.SetViewUp(0.0, 1.0, 0.0)
         vtk_camera.SetParallelScale(0.5 * camera.height)
         vtk_camera.SetClippingRange(0.5 * camera.height, 1.5 * camera.height)
-        for order, name in enumerate(self._shown):
-            self._shown[name][2].SetPosition(0.0, 0.0, order * LIFT * camera.height)
+        self._lift(camera.height)
 
     def show_edges(self, visible: bool) -> bool:
         """Draw or hide the element edges, and what goes with them, composing nothing; return whether it differs."""
         differs = visible != self._edges
         self._edges = visible
-        for layer, _, actor in self._shown.values():
-            if isinstance(layer, CellLayer):
-                actor.prop.SetEdgeVisibility(visible)
-            elif isinstance(layer, LineLayer) and layer.near:
-                actor.SetVisibility(visible)
+        for shown in self._shown.values():
+            for part in shown.parts:
+                if isinstance(shown.layer, CellLayer):
+                    part.actor.GetProperty().SetEdgeVisibility(visible)
+                part.actor.SetVisibility(self._is_seen(shown.layer))
         return differs
 
-    def _show_layer(self, layer: Layer, order: int) -> bool:
+    def pieces(self) -> list[list[Any]]:
+        """Return the actors to be seen, in the pieces that a drawing can be made of: about ``SLICE`` cells each."""
+        pieces: list[list[Any]] = [[]]
+        room = SLICE
+        for shown in self._shown.values():
+            if not self._is_seen(shown.layer):
+                continue
+            for part in shown.parts:
+                cells = part.stop - part.start
+                if cells > room and pieces[-1]:
+                    pieces.append([])
+                    room = SLICE
+                pieces[-1].append(part.actor)
+                room -= cells
+        return pieces
+
+    @contextmanager
+    def only(self, piece: list[Any]) -> Iterator[None]:
+        """Show one piece and hide the others for a while."""
+        wanted = set(map(id, piece))
+        try:
+            for shown in self._shown.values():
+                for part in shown.parts:
+                    part.actor.SetVisibility(id(part.actor) in wanted)
+            yield
+        finally:
+            for shown in self._shown.values():
+                for part in shown.parts:
+                    part.actor.SetVisibility(self._is_seen(shown.layer))
+
+    def _lift(self, height: float) -> None:
+        for order, shown in enumerate(self._shown.values()):
+            for part in shown.parts:
+                part.actor.SetPosition(0.0, 0.0, order * LIFT * height)
+
+    def _is_seen(self, layer: Layer) -> bool:
+        return self._edges or not (isinstance(layer, LineLayer) and layer.near)
+
+    def _show_layer(self, layer: Layer) -> bool:
         old = self._shown.get(layer.name)
-        if old is not None and _same_geometry(old[0], layer):
-            self._shown[layer.name] = (layer, *old[1:])
-            if _same_look(old[0], layer):
+        if old is not None and _same_geometry(old.layer, layer):
+            self._shown[layer.name] = _Shown(layer, old.parts)
+            if _same_look(old.layer, layer):
                 return False
-            _recolor(layer, *old[1:])
+            _recolor(layer, old.parts)
             return True
         self._remove(layer.name)
-        data, texture = _dataset(layer)
-        actor = self._add(layer, data, texture)
-        actor.SetPosition(0.0, 0.0, order * LIFT * 2.0 * self._plotter.camera.GetParallelScale())
-        self._shown[layer.name] = (layer, data, actor)
+        twin = self._twin(layer)
+        parts = []
+        for start, stop, data, texture in _datasets(layer) if twin is None else twin:
+            actor = self._add(layer, data, texture)
+            actor.GetProperty().SetEdgeVisibility(isinstance(layer, CellLayer) and self._edges)
+            actor.SetVisibility(self._is_seen(layer))
+            parts.append(_Part(start, stop, data, actor))
+        self._shown[layer.name] = _Shown(layer, tuple(parts))
         return True
+
+    def _twin(self, layer: Layer) -> list[tuple[int, int, Any, Any]] | None:
+        """Return what is there already of the same lines, where these have no colours of their own."""
+        if not isinstance(layer, LineLayer) or layer.colors is not None:
+            return None
+        for shown in self._shown.values():
+            other = shown.layer
+            if isinstance(other, LineLayer) and other.points is layer.points and other.segments is layer.segments:
+                return [(part.start, part.stop, part.data, None) for part in shown.parts]
+        return None
 
     def _add(self, layer: Layer, data: Any, texture: Any) -> Any:
         """Add an actor by VTK's own means: pyvista's takes three times as long, for what is not used here."""
-        import pyvista
-        from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
+        from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
         mapper = vtkPolyDataMapper()
         mapper.SetInputData(data)
@@ -118,42 +195,53 @@ class Renderer:
         )
         mapper.SetScalarVisibility(rgb)
         mapper.SetColorModeToDirectScalars()
-        actor = pyvista.Actor(mapper=mapper, name=layer.name)
+        actor = vtkActor()
+        actor.SetMapper(mapper)
         actor.SetPickable(False)
-        actor.prop.SetLighting(False)
+        actor.GetProperty().SetLighting(False)
         if texture is not None:
             actor.SetTexture(texture)
-            actor.prop.SetColor(1.0, 1.0, 1.0)  # the texture is multiplied by it
+            actor.GetProperty().SetColor(1.0, 1.0, 1.0)  # the texture is multiplied by it
         if isinstance(layer, LineLayer):
-            actor.prop.SetColor(*_unit(layer.color))
-            actor.prop.SetLineWidth(layer.width if layer.colors is None else 1.0)
+            actor.GetProperty().SetColor(*_unit(layer.color))
+            actor.GetProperty().SetLineWidth(layer.width if layer.colors is None else 1.0)
         if isinstance(layer, CellLayer):
-            actor.prop.SetEdgeColor(*_unit(layer.edges or (40, 40, 40)))
-            actor.prop.SetEdgeOpacity(EDGE_OPACITY)
+            actor.GetProperty().SetEdgeColor(*_unit(layer.edges or (40, 40, 40)))
+            actor.GetProperty().SetEdgeOpacity(EDGE_OPACITY)
         self._plotter.renderer.AddActor(actor)
         return actor
 
     def _remove(self, name: str) -> None:
         if name in self._shown:
-            self._plotter.renderer.RemoveActor(self._shown.pop(name)[2])
+            for part in self._shown.pop(name).parts:
+                self._plotter.renderer.RemoveActor(part.actor)
 
 
-def _recolor(layer: Layer, data: Any, actor: Any) -> None:
+def _recolor(layer: Layer, parts: tuple[_Part, ...]) -> None:
     """Give what is shown of a layer its new colours."""
-    if isinstance(layer, CellLayer):
-        data.cell_data["rgb"] = layer.colors
-        if layer.edges is not None:
-            actor.prop.SetEdgeColor(*_unit(layer.edges))
-    elif isinstance(layer, TriangleLayer):
-        data.point_data["rgb"] = layer.colors
-    elif isinstance(layer, ImageLayer):
-        image = actor.GetTexture().GetInput()
-        image.point_data["rgb"] = layer.colors.reshape(-1, 3)
+    for part in parts:
+        if isinstance(layer, ImageLayer):
+            image = part.actor.GetTexture().GetInput()
+            image.point_data["rgb"] = layer.colors.reshape(-1, 3)
+            continue
+        _color(part.data, layer, part.start, part.stop, None if part is parts[0] else parts[0].data)
+        if isinstance(layer, CellLayer) and layer.edges is not None:
+            part.actor.GetProperty().SetEdgeColor(*_unit(layer.edges))
+        elif isinstance(layer, LineLayer):
+            part.actor.GetProperty().SetColor(*_unit(layer.color))
+            part.actor.GetProperty().SetLineWidth(layer.width)
+
+
+def _color(data: Any, layer: CellLayer | TriangleLayer | LineLayer, start: int, stop: int, first: Any) -> None:
+    """Give a run of a layer's cells its colours; those at points are the first run's, for all runs share the points."""
+    if layer.colors is None:
+        return
+    if not isinstance(layer, TriangleLayer):
+        data.GetCellData().SetScalars(_vtk_array(layer.colors[start:stop]))
+    elif first is None:
+        data.GetPointData().SetScalars(_vtk_array(layer.colors))
     else:
-        actor.prop.SetColor(*_unit(layer.color))
-        actor.prop.SetLineWidth(layer.width)
-        if layer.colors is not None:
-            data.cell_data["rgb"] = layer.colors
+        data.GetPointData().SetScalars(first.GetPointData().GetScalars())
 
 
 def _same_look(old: Layer, new: Layer) -> bool:
@@ -182,27 +270,49 @@ def _same_geometry(old: Layer, new: Layer) -> bool:
     return False
 
 
-def _dataset(layer: Layer) -> tuple[Any, Any]:
-    """Return VTK's copy of a layer's geometry, and a texture for pictures. Nothing is shared with workers."""
-    import pyvista
+def _datasets(layer: Layer) -> Iterator[tuple[int, int, Any, Any]]:
+    """Yield VTK's copies of a layer's runs of cells, and a texture for pictures. Nothing is shared with workers.
+
+    All runs of one layer share one array of points, which VTK hands to OpenGL once.
+    """
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
     if isinstance(layer, ImageLayer):
-        return _picture_plane(layer), _texture(layer.colors)
+        yield 0, 1, _picture_plane(layer), _texture(layer.colors)
+        return
+    points, cells = layer.points, _cells(layer)
     if isinstance(layer, LineLayer):
-        used = np.zeros(len(layer.points), dtype=bool)
-        used[layer.segments] = True
-        renumbered = np.cumsum(used) - 1
-        lines = np.empty((len(layer.segments), 3), dtype=np.int64)
-        lines[:, 0], lines[:, 1:] = 2, renumbered[layer.segments]
-        data = pyvista.PolyData(_raised(layer.points[used]), lines=lines.ravel())
-        if layer.colors is not None:
-            data.cell_data["rgb"] = layer.colors.copy()
-        return data, None
-    cells = layer.quads if isinstance(layer, CellLayer) else layer.triangles
-    data = pyvista.PolyData.from_regular_faces(_raised(layer.points), cells)
-    target = data.cell_data if isinstance(layer, CellLayer) else data.point_data
-    target["rgb"] = layer.colors.copy()
-    return data, None
+        used = np.zeros(len(points), dtype=bool)
+        used[cells] = True
+        points, cells = points[used], (np.cumsum(used, dtype=np.int32) - 1)[cells]
+    shared, first = vtkPoints(), None
+    shared.SetData(_vtk_array(_raised(points)))
+    for start in range(0, len(cells), SLICE):
+        stop = min(start + SLICE, len(cells))
+        data, run = vtkPolyData(), vtkCellArray()
+        run.SetData(cells.shape[1], _vtk_array(cells[start:stop].ravel()))
+        data.SetPoints(shared)
+        if isinstance(layer, LineLayer):
+            data.SetLines(run)
+        else:
+            data.SetPolys(run)
+        _color(data, layer, start, stop, first)
+        first = data if first is None else first
+        yield start, stop, data, None
+
+
+def _vtk_array(values: NDArray[Any]) -> Any:
+    """Return VTK's own copy of an array; pyvista's way there takes as long for a thousand values as for a million."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    return numpy_to_vtk(values, deep=True)
+
+
+def _cells(layer: CellLayer | TriangleLayer | LineLayer) -> NDArray[np.int32]:
+    if isinstance(layer, CellLayer):
+        return layer.quads
+    return layer.triangles if isinstance(layer, TriangleLayer) else layer.segments
 
 
 def _picture_plane(layer: ImageLayer) -> Any:

@@ -68,7 +68,7 @@ class Person:
     def wait_settled(self, seconds: float = 300.0) -> None:
         controller = self.window.controller
         self.wait(lambda: not controller.jobs.is_busy and controller.study and not controller.missing(), seconds)
-        self.wait(lambda: not self.window.turns.is_busy)
+        self.wait(lambda: not self.window.is_settling)
         self.rest(30)
 
     def spot(self, pane: Pane, x: float, y: float) -> QPoint:
@@ -118,11 +118,13 @@ class Person:
     def look(self) -> np.ndarray:
         """Return what is on the screen, VTK's panes included, ``(H, W, 3)``."""
         self.rest(150)
+        self.wait(lambda: not self.window.is_settling)
         return pixels(self.window.grab().toImage())
 
     def look_at(self, pane: Pane) -> np.ndarray:
         """Return what one pane's picture shows."""
         self.rest(150)
+        self.wait(lambda: not self.window.is_settling)
         picture = pane.surface.canvas.widget()
         corner = picture.mapTo(self.window, QPoint(0, 0))
         ratio = self.window.devicePixelRatioF()
@@ -132,6 +134,7 @@ class Person:
 
     def photograph(self, path: Path) -> None:
         self.rest(250)
+        self.wait(lambda: not self.window.is_settling)
         assert self.window.grab().save(str(path))
 
 

@@ -99,6 +99,7 @@ class FlatCanvas:
     """Remembers what it was shown."""
 
     is_ready = True
+    is_drawing = False
 
     def __init__(self, parent: QWidget) -> None:
         self._widget = QWidget(parent)
@@ -106,6 +107,9 @@ class FlatCanvas:
         self.camera = None
         self.edges = False
         self.disposed = False
+
+    def preparations(self):
+        return []
 
     def widget(self) -> QWidget:
         return self._widget

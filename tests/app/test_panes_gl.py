@@ -28,6 +28,7 @@ def window(qtbot, tmp_path):
     qtbot.waitUntil(window.isActiveWindow, timeout=5000)
     with qtbot.waitSignal(window.controller.settled, timeout=10_000):
         window.controller.open_source("ring")
+    Person(window).wait_settled()
     yield window
     window.close()
 
@@ -153,3 +154,31 @@ def test_hovering_and_marks_draw_no_scene_anew(window) -> None:
     window.board.refresh()
     person.rest(100)
     assert [other.surface.canvas.view.frames for other in window.board.visible_panes] == frames
+
+
+def test_a_large_scene_is_drawn_in_pieces_and_looks_the_same(window, monkeypatch) -> None:
+    person, pane = Person(window), window.board.panes[0]
+    view = pane.surface.canvas.view
+    whole, frames = person.look_at(pane), view.frames
+    monkeypatch.setattr("sizeviz.scene.renderer.SLICE", 60)
+    monkeypatch.setattr("sizeviz.app.panes.view.PIECE_SECONDS", 0.0)
+    window.controller.set_source(fake_source("again"), "Open again")  # another mesh, in slices now
+    person.wait_settled(10)
+    assert len(view._pieces) > 8 and view.frames > frames
+    in_pieces = person.look_at(pane)
+    assert np.abs(in_pieces.astype(int) - whole.astype(int)).mean() < 0.5
+
+
+def test_a_pane_made_ready_draws_at_once_what_it_is_shown_first(qtbot, tmp_path) -> None:
+    window = MainWindow(FakeEngine(), Settings(str(tmp_path / "settings.ini")))
+    qtbot.addWidget(window)
+    window.resize(1300, 800)
+    window.show()
+    person = Person(window)
+    window.preparation.start()
+    person.wait(lambda: window.preparation.is_done, 60)
+    assert all(pane.surface.canvas.is_ready for pane in window.board.visible_panes)
+    window.controller.open_source("ring")
+    person.wait_settled(20)
+    assert orange_share(person.look_at(window.board.panes[0])) > 0.05
+    window.close()

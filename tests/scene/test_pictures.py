@@ -55,9 +55,9 @@ def test_showing_other_colors_touches_no_geometry(stage) -> None:
     shown = subject(10)
     first, second = (compose(shown, ViewState(color_by=q)) for q in ("ratio", "quality"))
     stage.shoot(first, whole(first), 64, 64)
-    data = stage._renderer._shown["elements"][1]
+    data = stage._renderer._shown["elements"].parts
     pixels = stage.shoot(second, whole(second), 64, 64)
-    assert stage._renderer._shown["elements"][1] is data
+    assert stage._renderer._shown["elements"].parts is data
     assert "failing" not in stage._renderer._shown
     again = stage.shoot(compose(shown, ViewState(color_by="quality")), whole(second), 64, 64)
     np.testing.assert_array_equal(pixels, again)

@@ -168,7 +168,7 @@ def bins(values: NDArray[np.float64], quantity: Quantity) -> tuple[NDArray[Any],
     step = (high - low) / BINS
     below, above = int(np.ceil((1.0 - low) / step)), int(np.ceil((high - 1.0) / step))
     edges = 1.0 + step * np.arange(-below, above + 1)
-    counted = np.where((values > 1.0) & (values <= CORRECT), 1.0, values)
-    # numpy closes bins on the left; turned around, a value on an edge falls into the lower one
-    heights, _ = np.histogram(-counted, -edges[::-1])
-    return edges, heights[::-1]
+    # bins are closed on the right, so that R = 1 is counted with what passes
+    index = np.ceil((np.where(values <= CORRECT, np.minimum(values, 1.0), values) - 1.0) / step) - 1.0 + below
+    heights = np.bincount(np.clip(index, 0, below + above - 1).astype(np.intp), minlength=below + above)
+    return edges, heights

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QEvent, QSignalBlocker, QSize, Qt, Signal
-from qtpy.QtGui import QFontMetrics, QPainter
+from qtpy.QtGui import QFontMetrics
 from qtpy.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
@@ -23,6 +23,8 @@ from qtpy.QtWidgets import (
     QVBoxLayout,
     QWidget,
 )
+
+from sizeviz.app.qt import painting
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -161,10 +163,10 @@ class ElidedLabel(QLabel):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw what fits, in the style's colour."""
-        painter = QPainter(self)
         middle = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
-        painter.setPen(self.palette().color(self.foregroundRole()))
-        painter.drawText(self.contentsRect(), middle, self.shown)
+        with painting(self) as painter:
+            painter.setPen(self.palette().color(self.foregroundRole()))
+            painter.drawText(self.contentsRect(), middle, self.shown)
 
 
 class VerdictLabel(QLabel):
@@ -217,14 +219,14 @@ class Menu(QComboBox):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the menu, its words ending in an ellipsis where there is no room for all of them."""
-        painter = QStylePainter(self)
         option = QStyleOptionComboBox()
         self.initStyleOption(option)
         field = QStyle.SubControl.SC_ComboBoxEditField
         room = self.style().subControlRect(QStyle.ComplexControl.CC_ComboBox, option, field, self).width()
         option.currentText = self.fontMetrics().elidedText(option.currentText, Qt.TextElideMode.ElideRight, room - 2)
-        painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
-        painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
+        with painting(self, QStylePainter) as painter:
+            painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
+            painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
 
 
 def number(value: float, low: float, high: float, decimals: int = 3) -> QDoubleSpinBox:

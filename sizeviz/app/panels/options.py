@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
@@ -31,9 +32,9 @@ class OptionsPanel(Form):
 
     changed = Signal(object, str, str)
 
+    @abstractmethod
     def show_options(self, options: StudyOptions) -> None:
         """Show the options as they are, without telling."""
-        raise NotImplementedError
 
     def _tell(self, stage: str, name: str, value: Any, words: str) -> None:
         def make(options: StudyOptions) -> StudyOptions:

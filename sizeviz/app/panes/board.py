@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ from qtpy.QtCore import Signal
 from qtpy.QtWidgets import QGridLayout, QWidget
 
 from sizeviz.app.panes.pane import EDGE_PIXELS, Pane
+from sizeviz.app.turns import Turns
 from sizeviz.scene.compose import scale_for, values_of
 from sizeviz.scene.view import FIELD_QUANTITIES, ViewState
 
@@ -31,6 +33,12 @@ FIRST_VIEWS: tuple[ViewState, ...] = (
     ViewState(method="size-preserving", color_by="quality"),
 )
 """What the panes show until somebody chooses otherwise."""
+
+LIGHT = 4_000
+"""As long as the panes show fewer elements than this, all are brought up to date at once; else each has its turn."""
+
+NODES_PER_ELEMENT = 16
+"""So many nodes of a field take as long to show as one element."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +75,7 @@ class PaneBoard(QWidget):
     ) -> None:
         super().__init__(parent)
         self._controller, self._make_canvas = controller, make_canvas
+        self.turns = Turns(self)
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(8, 8, 8, 8)
         self._grid.setSpacing(8)
@@ -86,6 +95,23 @@ class PaneBoard(QWidget):
     def active(self) -> Pane:
         """The pane that keys and lists act on."""
         return self.panes[min(self._active, self._count - 1)]
+
+    @property
+    def is_light(self) -> bool:
+        """Whether all that is on show takes no time worth a turn of the event loop."""
+        elements = 0
+        for pane in self.visible_panes:
+            if not pane.surface.canvas.is_ready:
+                return False
+            subject = self._controller.displayed(pane.view.method).subject
+            elements += 0 if subject.mesh is None else subject.mesh.n_quads
+            elements += 0 if subject.prescribed is None else len(subject.prescribed.sizes) // NODES_PER_ELEMENT
+        return elements < LIGHT
+
+    @property
+    def is_drawing(self) -> bool:
+        """Whether any pane's picture is still on its way to the screen."""
+        return self.turns.is_busy or any(pane.surface.canvas.is_drawing for pane in self.visible_panes)
 
     @property
     def methods(self) -> tuple[str, ...]:
@@ -144,12 +170,15 @@ class PaneBoard(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show what the controller has now."""
-        for pane in self.visible_panes:
-            self.refresh_pane(pane)
+        """Show what the controller has now; of large meshes a pane in each turn of the event loop."""
+        self.turns.take({pane: partial(self.refresh_pane, pane) for pane in self.visible_panes})
+        if self.is_light:
+            self.turns.finish()
 
     def refresh_pane(self, pane: Pane) -> None:
         """Show what the controller has now in one pane."""
+        if pane not in self.visible_panes:
+            return
         shown = [(other, self._controller.displayed(other.view.method)) for other in self.visible_panes]
         displayed = dict(shown)[pane]
         chosen = None
@@ -184,6 +213,7 @@ class PaneBoard(QWidget):
 
     def dispose(self) -> None:
         """Free what VTK holds."""
+        self.turns.drop()
         for pane in self.panes:
             pane.surface.canvas.dispose()
 

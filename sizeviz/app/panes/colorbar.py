@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from qtpy.QtGui import QColor, QFontMetricsF, QImage, QPainter, QPen
+from qtpy.QtGui import QColor, QFontMetricsF, QImage, QPen
 from qtpy.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QFrame, QSpinBox, QWidget
 
+from sizeviz.app.qt import painting
 from sizeviz.scene.colormaps import MAPS, RATIO_MAP
 from sizeviz.scene.compose import DEFAULT_MAPS, LOG_QUANTITIES
 
 if TYPE_CHECKING:
-    from qtpy.QtGui import QKeyEvent, QMouseEvent, QPaintEvent
+    from qtpy.QtGui import QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 
     from sizeviz.scene.scale import ColorScale
     from sizeviz.scene.view import ViewState
@@ -72,13 +73,16 @@ class ColorBar(QWidget):
         """Draw strip and ticks; labels that would touch are left out, but never 1 and 1.1 of R's bar."""
         if self._scale is None or self._strip is None:
             return
-        painter = QPainter(self)
+        with painting(self) as painter:
+            self._paint(painter, self._scale, self._strip)
+
+    def _paint(self, painter: QPainter, scale: ColorScale, strip: QImage) -> None:
         box = QRectF(MARGIN, 4, self.width() - 2 * MARGIN, BAR_HEIGHT)
-        painter.drawImage(box, self._strip)
+        painter.drawImage(box, strip)
         ink = self.palette().color(self.foregroundRole())
         metrics = QFontMetricsF(self.font())
         taken: list[QRectF] = []
-        for at, label in _by_weight(self._scale):
+        for at, label in _by_weight(scale):
             x = box.left() + at * box.width()
             width = metrics.horizontalAdvance(label)
             left = min(max(x - 0.5 * width, 0.0), self.width() - width)
@@ -92,7 +96,6 @@ class ColorBar(QWidget):
         if self.hasFocus():
             painter.setPen(QPen(QColor(self.palette().highlight().color()), 1.4))
             painter.drawRect(box.adjusted(-2, -2, 2, 2))
-        painter.end()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Open the editor."""

@@ -9,6 +9,7 @@ from qtpy.QtCore import QPointF, Qt, Signal
 from qtpy.QtGui import QColor, QFontMetrics, QPainter, QPen, QPolygonF
 from qtpy.QtWidgets import QWidget
 
+from sizeviz.app.qt import painting
 from sizeviz.scene.camera import Camera2D
 
 if TYPE_CHECKING:
@@ -144,17 +145,16 @@ class Glass(QWidget):
         """Draw marks, the path of a line or polygon, and the ring."""
         if not (self.marks or self.path or self.ring or self.overlay):
             return
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        if self.overlay is not None:
-            self.overlay.paint(self, painter)
-        for mark in self.marks.values():
-            self._draw_mark(painter, mark)
-        if self.path:
-            self._draw_path(painter)
-        if self.ring is not None:
-            self._draw_ring(painter, self.ring)
-        painter.end()
+        with painting(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            if self.overlay is not None:
+                self.overlay.paint(self, painter)
+            for mark in self.marks.values():
+                self._draw_mark(painter, mark)
+            if self.path:
+                self._draw_path(painter)
+            if self.ring is not None:
+                self._draw_ring(painter, self.ring)
 
     def _draw_mark(self, painter: QPainter, mark: Mark) -> None:
         shape = QPolygonF([self.pixel(x, y) for x, y in mark.corners])
