@@ -109,6 +109,7 @@ def test_a_session(gl_window, tmp_path) -> None:
     person.key(Qt.Key.Key_Y, Qt.KeyboardModifier.ControlModifier)
     assert controller.study.source.field is fields[2]
     person.key(Qt.Key.Key_B)
+    person.wait(lambda: not window.is_settling)
     assert not limited.badge.isHidden()  # painted over, not run yet
 
     # cancel a run half-way
@@ -120,6 +121,7 @@ def test_a_session(gl_window, tmp_path) -> None:
     idle = time.perf_counter() - began
     measured["cancel to idle (ms)"] = round(1000 * idle)
     assert idle < 1.0  # 0.2 s on a machine of one's own; tests share theirs
+    person.wait(lambda: not window.is_settling)
     assert controller.missing() and not limited.badge.isHidden()
 
     # change alpha, see the table change
