@@ -19,6 +19,13 @@ CORNER_ANGLE = np.deg2rad(30.0)
 """A loop vertex that turns by more than this (radians) is a corner unless the caller says otherwise."""
 
 
+SMALLEST, LARGEST = 1e-60, 1e60
+"""Extents between which products of four lengths, which the predicates take, are numbers that can be held."""
+
+FARTHEST = 1e13
+"""Distance from the origin over the extent beyond which rounding leaves too few different places."""
+
+
 @dataclass(frozen=True, eq=False)
 class Curve:
     """A polyline that boundary nodes slide along: a loop between two corners, a whole loop, or an inner line.
@@ -77,7 +84,8 @@ class Domain:
     Raises
     ------
     InputError
-        If a loop has fewer than three distinct vertices or no area.
+        If a loop has fewer than three distinct vertices or no area, or if the domain is too small, too large or too far
+        from the origin for numbers to hold it.
     """
 
     outer: NDArray[np.float64]
@@ -89,6 +97,7 @@ class Domain:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        _require_extent(self.outer, self.label)
         loops = [_clean_loop(self.outer, f"{self.label}: outer loop")]
         loops += [_clean_loop(hole, f"{self.label}: hole {k}") for k, hole in enumerate(self.holes)]
         marks: list[NDArray[np.bool_] | None] = [*self.corners] or [None] * len(loops)
@@ -169,6 +178,20 @@ def turning_angles(loop: NDArray[np.float64]) -> NDArray[np.float64]:
     after = np.roll(loop, -1, axis=0) - loop
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return np.arctan2(cross, (before * after).sum(axis=1))
+
+
+def _require_extent(outer: ArrayLike, label: str) -> None:
+    points = as_points(outer, f"{label}: outer loop")
+    extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
+    if extent > 0.0 and not SMALLEST <= extent <= LARGEST:
+        raise InputError(
+            f"{label}: it is {extent:.3g} wide; scale it, and its sizes, to between {SMALLEST:g} and {LARGEST:g}"
+        )
+    if extent > 0.0 and float(np.abs(points).max()) > FARTHEST * extent:
+        raise InputError(
+            f"{label}: it is {extent:.3g} wide, but lies {np.abs(points).max():.3g} from the origin, where coordinates "
+            "cannot tell its nodes apart; move it nearer"
+        )
 
 
 def _clean_loop(value: ArrayLike, name: str) -> NDArray[np.float64]:

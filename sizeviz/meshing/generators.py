@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from sizeviz.errors import InputError, MeshingError
+from sizeviz.geometry.outline import require_kept_inside, require_simple
 from sizeviz.meshing.decomposition import Decomposition
 from sizeviz.meshing.frontal.generator import Frontal
 from sizeviz.meshing.gmsh import GmshGenerator
@@ -58,7 +59,7 @@ def generated(
     Raises
     ------
     InputError
-        If there is no generator of that name, or curves of the domain cross.
+        If there is no generator of that name, curves of the domain cross, or lines or points lie outside.
     MeshingError
         If the mesh would have more than ``options.max_elements`` elements, or no valid mesh was found.
     """
@@ -66,7 +67,13 @@ def generated(
     if chosen.mesher not in GENERATORS:
         raise InputError(f"mesher {chosen.mesher!r} is not known; choose one of {', '.join(sorted(GENERATORS))}")
     _refuse_too_many(domain, size, chosen)
-    return GENERATORS[chosen.mesher].generate(domain, size, chosen, monitor)
+    try:
+        return GENERATORS[chosen.mesher].generate(domain, size, chosen, monitor)
+    except (InputError, MeshingError):
+        # a domain that makes no sense is looked into only where it did harm, as that takes a while for long outlines
+        require_simple(domain)
+        require_kept_inside(domain)
+        raise
 
 
 def _refuse_too_many(domain: Domain, size: SizeField, options: MeshOptions) -> None:

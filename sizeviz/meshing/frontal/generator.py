@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from shapely import LineString, line_interpolate_point, line_locate_point
 
+from sizeviz.errors import InputError, MeshingError
 from sizeviz.geometry import QuadMesh
 from sizeviz.geometry.delaunay import Triangulation, hilbert_order, triangulated
 from sizeviz.meshing.checks import verify
@@ -17,9 +18,10 @@ from sizeviz.meshing.frontal.mending import mended
 from sizeviz.meshing.frontal.narrows import fitted
 from sizeviz.meshing.frontal.packing import packed, seeded
 from sizeviz.meshing.frontal.pairing import paired
-from sizeviz.meshing.frontal.region import region_arrays
+from sizeviz.meshing.frontal.region import RegionArrays, region_arrays
 from sizeviz.meshing.frontal.splitting import split
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.sizing.capped import capped
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +29,10 @@ if TYPE_CHECKING:
     from sizeviz.geometry import Domain
     from sizeviz.meshing.options import MeshOptions
     from sizeviz.sizing import SizeField
+
+
+UNCROSSINGS = 6
+"""How often sizes are lowered where edges of the outline cross."""
 
 
 class Frontal:
@@ -63,9 +69,7 @@ def _triangulation(
 ) -> tuple[Outline, Triangulation]:
     """Return the outline, renumbered, and the triangulation of the packed nodes, sorted along a Hilbert curve."""
     monitor.step(0.0, "placing nodes on the boundary")
-    net, size = fitted(domain, size, options.scale)
-    rim = outline(domain, size, options.scale, net)
-    region = region_arrays(domain, rim)
+    rim, region, size = _uncrossed(domain, size, options.scale)
     seeds = seeded(region, size, options, SubMonitor(monitor, 0.0, 0.2))
     nodes = packed(rim, region, seeds, size, options, SubMonitor(monitor, 0.2, 0.8))
     order = hilbert_order(nodes)
@@ -77,6 +81,30 @@ def _triangulation(
     edges = at[rim.edges]
     mesh = triangulated(nodes[order], edges, bounding=rim.bounding, monitor=SubMonitor(monitor, 0.8, 1.0))
     return Outline(mesh.points, curve, fixed, edges, rim.bounding, rim.along), mesh
+
+
+def _uncrossed(domain: Domain, size: SizeField, scale: float) -> tuple[Outline, RegionArrays, SizeField]:
+    """Return the outline, where points may be packed, and the sizes that there is room for.
+
+    Edges are chords of curves, and cross where two walls almost touch. Sizes are lowered there, until they do not or
+    vertices of the curves become nodes.
+    """
+    for n in range(UNCROSSINGS + 1):
+        net, fitting = fitted(domain, size, scale)
+        rim = outline(domain, fitting, scale, net)
+        try:
+            return rim, region_arrays(domain, rim), fitting
+        except InputError as error:
+            ends = rim.points[rim.edges]
+            chords = shapely.linestrings(ends)
+            crossed = np.unique(shapely.STRtree(chords).query(chords, predicate="crosses"))
+            if n == UNCROSSINGS or not len(crossed):
+                raise MeshingError(
+                    f"{domain.label}: edges along two walls that almost touch cross each other; make the sizes there "
+                    f"smaller, or the gap wider, or close it ({error})"
+                ) from None
+            size = capped(fitting, ends[crossed].mean(axis=1), 0.5 * rim.lengths[crossed] / scale)
+    raise AssertionError("the last attempt returns or raises")
 
 
 def _halved(rim: Outline, domain: Domain, points: NDArray[np.float64], edges: NDArray[np.int32]) -> Outline:
