@@ -27,7 +27,9 @@ TITLES: dict[str, str] = {
 def print_report(report: Mapping[str, Any]) -> None:
     """Print the table of a report, as ``report.json`` holds it."""
     methods = report["methods"]
-    title = f"{report['source']['label']} · mesh scale {report['options']['mesh_scale']:g}"
+    title = str(report["source"]["label"])
+    if set(methods) != {"guaranteed"}:  # which finds a scale of its own
+        title += f" · mesh scale {report['options']['mesh_scale']:g}"
     table = Table(box=SIMPLE_HEAD)
     table.add_column("")
     for method in methods:

@@ -14,6 +14,7 @@ from files.reader_seeds import quad_mesh
 from PIL import Image
 
 from sizeviz.cli import run_command_line
+from sizeviz.cli.tables import print_report
 from sizeviz.files import read_field, read_mesh, write_mesh
 from sizeviz.sizing import BackgroundMesh, SizeField
 from sizeviz.sources import load
@@ -51,6 +52,13 @@ class TestCompare:
             assert set(content.point_data) == {"size_prescribed", "size_target"}
         assert report["options"]["epsilon"] == 1.0 / report["options"]["alpha"]
 
+    def test_a_scale_is_told_only_of_methods_that_use_it(self, compared: Path, capsys: pytest.CaptureFixture) -> None:
+        report = json.loads((compared / "report.json").read_text())
+        print_report(report)
+        assert "· mesh scale 0.87" in capsys.readouterr().out
+        print_report({**report, "methods": {"guaranteed": report["methods"]["guaranteed"]}})
+        assert "mesh scale" not in capsys.readouterr().out
+
     def test_picture_shows_both_methods(self, compared: Path) -> None:
         with Image.open(compared / "compare.png") as picture:
             pixels = np.asarray(picture.convert("RGB"))
@@ -70,7 +78,7 @@ def test_run_writes_mesh_picture_report_and_prints_the_table(tmp_path: Path, cap
     assert (typed["smooth"], typed["seed"], typed["mesh_scale"], typed["measure"]) == (False, 3, 0.9, "max-edge")
     printed = capsys.readouterr()
     assert f"{report['methods']['none']['n_quads']:,}" in printed.out
-    assert "R ≤ 1, longest edge" in printed.out
+    assert "R ≤ 1, longest edge" in printed.out and "mesh scale 0.9" in printed.out
     assert not printed.err, "no progress where nobody watches"
 
 
