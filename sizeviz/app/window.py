@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import (
-    QApplication,
     QDockWidget,
     QLabel,
     QMainWindow,
@@ -89,7 +88,7 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.settings = settings or Settings()
         self.theme = THEMES.get(self.settings.theme, THEMES["light"])
-        apply_theme(QApplication.instance(), self.theme)  # before there is anything to polish
+        apply_theme(self, self.theme)  # before there is anything to polish
         self.controller = Controller(engine, self)
         self.turns = Turns(self)
         self.actions_ = Actions(self)
@@ -305,7 +304,7 @@ class MainWindow(QMainWindow):
     def set_theme(self, theme: Theme) -> None:
         """Change between light and dark."""
         self.theme = theme
-        apply_theme(QApplication.instance(), theme)
+        apply_theme(self, theme)
         self.settings.theme = "dark" if theme.dark else "light"
         self.board.dark = theme.dark
         for histogram in self.histograms:

@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 import pytest
+from app.driver import Person
 from app.fakes import FakeEngine, FlatCanvas, fake_source
 from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from qtpy.QtGui import QDropEvent
@@ -456,3 +457,42 @@ def test_a_preview_keeps_nobody_from_applying(qtbot, opened, monkeypatch) -> Non
     assert opened.judge_panel.apply.isEnabled()
     with qtbot.waitSignal(opened.controller.settled, timeout=5000):
         opened.judge_panel.apply.click()
+
+
+def test_the_menus_of_narrow_panes_stay_readable(qtbot, opened) -> None:
+    opened.resize(1400, 900)
+    for count in (3, 4, 2):
+        opened.actions_[f"panes-{count}"].trigger()
+        QApplication.processEvents()
+        for pane in opened.board.visible_panes:
+            for menu in (pane.method, pane.quantity):
+                assert menu.width() >= menu.sizeHint().width()
+
+
+def test_a_session_has_no_complaint_from_qt(qtbot, opened, qtlog) -> None:
+    pane = opened.board.panes[0]
+    opened.actions_["paint"].trigger()
+    person = Person(opened)
+    person.drag(pane, [(0.2, 0.2), (0.6, 0.5)])
+    person.hover(pane, 0.4, 0.4)
+    opened.actions_["theme"].trigger()
+    opened.actions_["panes-4"].trigger()
+    person.wait_settled(10)
+    opened.grab()
+    assert [record.message for record in qtlog.records] == []
+
+
+def test_an_error_while_painting_ends_the_painter(qtbot, opened, qtlog, monkeypatch) -> None:
+    glass = opened.board.panes[0].surface.glass
+
+    class Broken:
+        def paint(self, glass, painter) -> None:
+            raise ValueError("cannot be drawn")
+
+    glass.overlay = Broken()
+    with qtbot.captureExceptions() as errors:
+        glass.grab()
+        glass.overlay = None
+        glass.grab()
+    assert [kind for kind, *_ in errors][:1] == [ValueError]
+    assert not any("painter" in record.message.lower() for record in qtlog.records)

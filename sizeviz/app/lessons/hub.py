@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QObject
-from qtpy.QtWidgets import QApplication, QMenu, QToolButton
+from qtpy.QtWidgets import QMenu, QToolButton
 
 from sizeviz.app.exports import save_process_film
 from sizeviz.app.lessons.in_panes import PaneLessons
@@ -112,7 +112,7 @@ class Lessons(QObject):
     def set_presenter(self, on: bool) -> None:
         """Make everything legible from the last row, or as it was."""
         self.type_scale = PRESENTER_SCALE if on else 1.0
-        apply_theme(QApplication.instance(), self._window.theme, self.type_scale)
+        apply_theme(self._window, self._window.theme, self.type_scale)
         self.set_theme(self._window.theme)
         self._show_search(not on)
         self.panes.set_presenter(on, self.type_scale)
@@ -133,7 +133,7 @@ class Lessons(QObject):
         self.process.close()
         self.panes.panel.transport.stop()
         if self.type_scale != 1.0:
-            apply_theme(QApplication.instance(), self._window.theme, 1.0)
+            apply_theme(self._window, self._window.theme, 1.0)
 
     # -- inside ----------------------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QPoint, Qt, Signal
-from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from sizeviz.app.panels.controls import ElidedLabel, Menu, VerdictLabel
 from sizeviz.app.panes.colorbar import ColorBar, ColorBarEditor
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
+    from qtpy.QtGui import QResizeEvent
 
     from sizeviz.app.panes.canvas import Canvas
     from sizeviz.scene.scale import ColorScale
@@ -137,10 +138,19 @@ class Pane(QFrame):
         editor.show()
         return editor
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Put the menus above each other where they have no room beside each other; the width alone decides."""
+        super().resizeEvent(event)
+        margins = self._head.contentsMargins()
+        room = self.width() - margins.left() - margins.right() - self._head.spacing()
+        fits = self.method.sizeHint().width() + self.quantity.sizeHint().width() <= room
+        direction = QBoxLayout.Direction
+        self._head.setDirection(direction.LeftToRight if fits else direction.TopToBottom)
+
     # -- inside ----------------------------------------------------------------------------------------------------
 
     def _lay_out(self) -> None:
-        head = QHBoxLayout()
+        self._head = head = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         head.setContentsMargins(8, 7, 8, 3)
         head.setSpacing(6)
         head.addWidget(self.method)
