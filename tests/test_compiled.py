@@ -134,3 +134,18 @@ def test_each_part_runs(part: str) -> None:
     from sizeviz.study.rehearsal import PARTS
 
     assert PARTS[part]() is None
+
+
+def test_the_rehearsal_plays_fields_on_grids_and_on_triangulations(monkeypatch: pytest.MonkeyPatch) -> None:
+    import sizeviz.sizing
+    from sizeviz.study.rehearsal import PARTS
+
+    grids, whole = [], sizeviz.sizing.preserved
+
+    def seen(field, *rest, **options):
+        grids.append(field.background.grid is not None)
+        return whole(field, *rest, **options)
+
+    monkeypatch.setattr(sizeviz.sizing, "preserved", seen)
+    PARTS["field"]()
+    assert set(grids) == {True, False}

@@ -104,12 +104,13 @@ class Judge:
 
     def _look_closely(self, rows: NDArray[np.int64]) -> None:
         work = self.work
-        quads = work.quads[rows]
-        least = self.reference.min_over(work.xy, quads, threads=work.options.threads)
+        corners = work.xy[work.quads[rows]]
+        own = np.arange(4 * len(rows), dtype=np.int32).reshape(-1, 4)
+        least = self.reference.min_over(corners.reshape(-1, 2), own, threads=work.options.threads)
         found = least / self.least[rows]
         self.share[rows] *= found
         self.ratio[rows] /= found
-        self.least[rows], self.known[rows] = least, work.xy[quads]
+        self.least[rows], self.known[rows] = least, corners
 
     def verify(self) -> None:
         """Judge every element that comes near to 1 by the reference itself, where it is now."""

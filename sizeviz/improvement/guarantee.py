@@ -28,6 +28,8 @@ SLACK = 0.97
 WEIGHT = 100.0
 """Weight of the edge term over the whole mesh."""
 AWARE_SWEEPS = 12
+EVERY = 2
+"""Sweeps from one look at the smallest sizes to the next."""
 FEW = 0.005
 """Share of wrong elements below which smoothing around them is cheaper than everywhere."""
 REPAIRS = 4
@@ -193,14 +195,15 @@ def _prepared(mesh: QuadMesh, domain: Domain, tight: SizeField, options: SmoothO
 
 
 def _aware(work: Workspace, judge: Judge, monitor: Monitor) -> None:
-    """Smooth with the edges held below the smallest size, which is looked up again after every sweep."""
+    """Smooth with the edges held below the smallest size, which is looked up again after every other sweep."""
     work.weight = WEIGHT
     everywhere = np.arange(len(work.quads))
-    for n in range(AWARE_SWEEPS):
+    for n in range(0, AWARE_SWEEPS, EVERY):
         judge.limit(everywhere, SLACK)
-        work.sweep(1, SubMonitor(monitor, n / AWARE_SWEEPS, (n + 1) / AWARE_SWEEPS), "holding edges below the sizes")
+        part = SubMonitor(monitor, n / AWARE_SWEEPS, (n + EVERY) / AWARE_SWEEPS)
+        work.sweep(EVERY, part, "holding edges below the sizes")
         # far from its limit an element neither feels the edge term nor needs its smallest size looked up again
-        judge.look(everywhere if n % LOOKS == LOOKS - 1 else np.flatnonzero(judge.ratio > CLOSE), UNASKED)
+        judge.look(everywhere if n % LOOKS == LOOKS - EVERY else np.flatnonzero(judge.ratio > CLOSE), UNASKED)
         if len(judge.wrong) <= FEW * len(everywhere):
             break
     judge.look(everywhere)
@@ -247,9 +250,10 @@ def _repair(work: Workspace, judge: Judge, rounds: int, monitor: Monitor) -> Non
             break
         nodes = judge.rings(wrong, 2)
         rows = judge.touched(nodes)
-        for _ in range(AWARE_SWEEPS):
+        for _ in range(0, AWARE_SWEEPS, EVERY):
             judge.limit(rows, SLACK)
-            settled = work.sweep_some(nodes) < 1e-3
+            for _ in range(EVERY):
+                settled = work.sweep_some(nodes) < 1e-3
             judge.look(rows, UNASKED)
             if settled:
                 break

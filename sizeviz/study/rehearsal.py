@@ -42,6 +42,7 @@ def rehearsed(monitor: Monitor = SILENT) -> Study:
     study = run(Study(source), methods, monitor)
     for method in methods:
         mesh_arrays(study, method)
+    _play_triangles()
     return study
 
 
@@ -50,6 +51,11 @@ def valley(nodes: int = 33) -> SizeField:
     background = BackgroundMesh.unit_square_grid(nodes, nodes)
     x, y = background.points.T
     return SizeField(background, np.clip(np.abs(x - 0.4 - 0.2 * y), 0.03, 0.12), label="rehearsal")
+
+
+def on_triangles(field: SizeField) -> SizeField:
+    """Return the same sizes on a background that is not known to be a grid, as formulas and files have."""
+    return SizeField(BackgroundMesh(field.background.points, field.background.triangles), field.sizes, field.label)
 
 
 def lattice(cells: int = 12) -> QuadMesh:
@@ -77,6 +83,18 @@ def _play_field() -> None:
     field = valley()
     limited(field, LimitOptions())
     ideal_count(preserved(field, PreserveOptions()), Domain.unit_square())
+    _play_triangles()
+
+
+def _play_triangles() -> None:
+    from sizeviz.improvement import tightened
+    from sizeviz.sizing import ideal_count, limited, preserved
+
+    field = on_triangles(valley())
+    limited(field, LimitOptions())
+    ideal_count(tightened(field, preserved(field, PreserveOptions())), Domain.unit_square())
+    field.min_over(lattice().points, lattice().quads)
+    field.at(lattice().points)
 
 
 def _play_mesh() -> None:
