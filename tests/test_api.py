@@ -67,7 +67,8 @@ def test_sources_of_every_kind(source, tmp_path: Path) -> None:
     by_function = sizeviz.load(lambda x, y: 0.1 + 0.05 * x * y)
     assert by_function.reference.at([[0.5, 0.5]]) == pytest.approx(0.1125, rel=1e-15)
     assert sizeviz.load(VALLEY, sizeviz.Domain.rectangle(0, 0, 2, 1)).domain.area == 2.0
-    for wrong in (np.ones(5), np.ones((1, 5)), np.zeros((3, 3)), "no-such-thing"):
+    for wrong in (np.ones(5), np.ones((1, 5)), np.zeros((3, 3)), "no-such-thing", None, [[1, 2], [3]], [["a"] * 2] * 2,
+                  np.ones((3, 3), complex), lambda x, y: np.ones(3), lambda x, y: "a"):  # fmt: skip
         with pytest.raises(InputError):
             sizeviz.load(wrong)
 
@@ -86,6 +87,18 @@ def test_painting(source) -> None:
             sizeviz.paint(blank, path, radius=0.1, **effects)
     with pytest.raises(InputError, match="reaches no node"):
         sizeviz.paint(blank, [(5.0, 5.0)], radius=0.1, size=0.1)
+
+
+def test_what_cannot_be_shown_or_drawn_is_told_in_a_line(source, tmp_path: Path) -> None:
+    for wrong in (
+        lambda: sizeviz.show(3),
+        lambda: sizeviz.save_page(source, tmp_path / "p.html"),
+        lambda: sizeviz.screenshot(tmp_path / "p.png", source, width=0),
+        lambda: sizeviz.paint(source, [(0.5, 0.5)], radius=0.1, size=0.1, shape="circle"),
+    ):
+        with pytest.raises(InputError, match=r"cannot be shown|give 64 to 20000 pixels|shape 'circle' is unknown"):
+            wrong()
+    assert not list(tmp_path.iterdir())
 
 
 def test_show_is_a_page_in_a_frame_that_cannot_reach_the_notebook(source, study, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from sizeviz.errors import InputError
+from sizeviz.files.guard import one_line
 from sizeviz.geometry import Domain
 from sizeviz.notebook import progress
 from sizeviz.sizing import BackgroundMesh, SizeField
@@ -142,7 +143,13 @@ def _gridded(values: ArrayLike, domain: Domain) -> SizeField:
     """Return sizes on a grid over the domain's bounds."""
     from sizeviz.sizing import Grid
 
-    sizes = np.asarray(values, dtype=np.float64)
+    try:
+        given = np.asarray(values)
+        sizes = given.astype(np.float64, casting="same_kind" if given.dtype.kind == "c" else "unsafe")
+    except (TypeError, ValueError) as problem:
+        raise InputError(
+            f"sizes that are no rectangular array of real numbers ({one_line(problem, 80)}); give a grid (ny, nx)"
+        ) from None
     if sizes.ndim != 2 or min(sizes.shape) < 2:
         raise InputError(
             f"sizes of shape {sizes.shape}: give a grid (ny, nx), at least 2 by 2, row 0 at the smallest y"

@@ -11,6 +11,7 @@ from sizeviz.conformity import judged
 from sizeviz.errors import InputError
 from sizeviz.geometry import QuadMesh
 from sizeviz.notebook import Shown, picture_page
+from sizeviz.sources import Source
 from sizeviz.study import Study
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from sizeviz.conformity import Measure
     from sizeviz.scene import Subject, ViewState
     from sizeviz.scene.view import Quantity
-    from sizeviz.sources import Source
 
 MOST_ON_A_PAGE = 400_000
 """Elements that ``show`` puts on an interactive page; more are shown as a picture."""
@@ -141,6 +141,8 @@ def _subjects(
         if subjects or isinstance(source, QuadMesh):
             return list(subjects.values()), heading
         source = source.source
+    if not isinstance(source, Source):
+        raise InputError(f"a {type(source).__name__} cannot be shown; give a study, a source or a mesh")
     bare = Subject(title=source.label, prescribed=source.field, domain=source.domain, image=source.image)
     named = {"Mesh": meshes} if isinstance(meshes, QuadMesh) else dict(meshes or {})
     shown = [
@@ -157,6 +159,8 @@ def _shoot(
     from sizeviz.scene.opengl import require_gl
     from sizeviz.scene.vector import VECTOR_SUFFIXES
 
+    if not 64 <= width <= 20_000:
+        raise InputError(f"width is {width}; give 64 to 20000 pixels")
     vector = path.suffix.lower() in VECTOR_SUFFIXES
     if not vector:
         require_gl()

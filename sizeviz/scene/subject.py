@@ -123,11 +123,19 @@ def subject_of(study: Study, method: str) -> Subject:
 
 
 def as_subject(shown: Study | Subject | QuadMesh, method: str = "") -> Subject:
-    """Return the subject to show: a run of a study, a bare mesh, or the subject handed in."""
+    """Return the subject to show: a run of a study, a bare mesh, or the subject handed in.
+
+    Raises
+    ------
+    InputError
+        If it is none of these.
+    """
     if isinstance(shown, Subject):
         return shown
     if isinstance(shown, QuadMesh):
         return Subject(title="Mesh", detail=f"{shown.n_quads:,} elements", mesh=shown)
+    if not hasattr(shown, "runs"):
+        raise InputError(f"a {type(shown).__name__} cannot be shown here; give a study, a mesh or a subject")
     return subject_of(shown, method)
 
 

@@ -131,7 +131,11 @@ def _checked(function: Function, points: NDArray[np.float64], label: str) -> NDA
     InputError
         If one is not finite and above 0, or beyond all measure.
     """
-    sizes = np.asarray(function(points[..., 0], points[..., 1]), dtype=np.float64)
+    told = function(points[..., 0], points[..., 1])
+    try:
+        sizes = np.broadcast_to(np.asarray(told, dtype=np.float64), points.shape[:-1])
+    except (TypeError, ValueError):
+        raise InputError(f"{label}: it must return numbers, as many as it is given places") from None
     bad = ~(np.isfinite(sizes) & (sizes > 0))
     if bad.any():
         x, y = points[bad][0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -88,6 +88,10 @@ class Stroke:
         object.__setattr__(self, "path", as_points(self.path, "stroke"))
         if not len(self.path):
             raise InputError("stroke: the path is empty; give at least one point")
+        if self.shape not in get_args(StrokeShape):
+            raise InputError(
+                f"stroke: shape {self.shape!r} is unknown; choose one of {', '.join(get_args(StrokeShape))}"
+            )
 
 
 def painted(field: SizeField, stroke: Stroke, original: SizeField | None = None) -> SizeField:
