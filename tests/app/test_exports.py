@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import types
 
 import pytest
 from app.test_process_player import pretend
@@ -83,10 +84,9 @@ def test_cancel_ends_a_film_at_once_and_leaves_nothing(qtbot, opened, tmp_path, 
     (tmp_path / "a.gif").write_bytes(b"the old one")
     started = tmp_path / "started"
     silent = f"import time, pathlib; pathlib.Path({str(started)!r}).touch(); time.sleep(60)"
-    popen = subprocess.Popen
-    monkeypatch.setattr(
-        films.subprocess, "Popen", lambda command, **kept: popen([sys.executable, "-c", silent], **kept)
-    )
+    silenced = types.SimpleNamespace(**vars(subprocess))  # of the films alone: others start processes too
+    silenced.Popen = lambda command, **kept: subprocess.Popen([sys.executable, "-c", silent], **kept)
+    monkeypatch.setattr(films, "subprocess", silenced)
     jobs = opened.controller.jobs
     exports.save_film(opened, Turn(), str(tmp_path / "a.gif"))
     qtbot.waitUntil(started.exists, timeout=20_000)
