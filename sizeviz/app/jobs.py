@@ -30,7 +30,7 @@ POLL_MS = 60
 
 LOG = logging.getLogger(__name__)
 
-WORKER_NICENESS = 10
+WORKER_NICENESS = 5
 """How far the worker stands back behind the window, as ``nice`` counts."""
 
 
