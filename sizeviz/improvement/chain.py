@@ -68,8 +68,7 @@ def improve(work: Workspace, rounds: int, monitor: Monitor) -> None:
         work.sweep(2, SubMonitor(monitor, 0.0, 0.05))
         clean_fast(work, SubMonitor(monitor, 0.05, 0.2))
         work.sweep(4, SubMonitor(monitor, 0.2, 0.3))
-        if work.domain.lines:
-            rescue(work, FLAT)  # before flat elements beside inner lines draw their neighbours in
+        rescue(work, FLAT)  # before flat elements on lines or the boundary draw their neighbours in
         clean_wide(work, rounds, SubMonitor(monitor, 0.3, 0.85))
     work.sweep(options.sweeps, SubMonitor(monitor, 0.85, 1.0))
     work.lift(options.floor)

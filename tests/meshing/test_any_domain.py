@@ -83,6 +83,13 @@ def test_with_a_sharp_corner(angle: float, outward: bool) -> None:
     assert_meshed(Domain(np.array([[0, 0], [1, 0], [1, 0.5], [0.7, 0.5], [1, 0.5 + rise], [1, 1], [0, 1]])))
 
 
+@pytest.mark.parametrize("angle", [12.35, 13.65, 14.2])
+def test_a_flat_element_beside_a_sharp_corner_goes_before_it_shrinks(angle: float) -> None:
+    # one element of a flat boundary node drew its neighbours in until no operation could mend it
+    t = np.deg2rad(angle)
+    assert_meshed(Domain(np.array([[0, 0], [1, 0], [np.cos(t), np.sin(t)]])))
+
+
 def test_with_holes_that_touch_at_a_corner() -> None:
     hole = np.array([[0.2, 0.2], [0.5, 0.2], [0.5, 0.5], [0.2, 0.5]])
     assert_meshed(Domain(SQUARE, (hole, hole + 0.3)))
