@@ -47,7 +47,7 @@ TRIES = 12
 """Operations that a visit of the wide clean-up may try."""
 MOST_VISITS, FEW_VISITS = 12, 5
 """How often one node is taken from the queue in one pass, so that a pass ends; the second where losses are allowed."""
-LOSS = 0.6
+LOSS = 0.45
 """Distortion that an operation may cost which changes no valence energy, but moves a pair of irregular nodes."""
 BUDGET = 1024
 """Nodes visited between two looks at the monitor."""
