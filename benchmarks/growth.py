@@ -18,9 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from sizeviz.geometry import Domain
-from sizeviz.improvement import GuaranteeOptions, SmoothOptions, guaranteed, improved, tightened
+from sizeviz.improvement import GuaranteeOptions, SmoothOptions, improved, tightened
 from sizeviz.meshing import MeshOptions, generated
 from sizeviz.sizing import BackgroundMesh, PreserveOptions, SizeField, ideal_count, preserved
+from sizeviz.study.promise import promised
 
 MODES = ("raw", "plain", "guaranteed")
 NODES = 1025
@@ -81,8 +82,9 @@ def made(field: SizeField, target: SizeField, mode: str) -> tuple[int, int]:
         return (mesh if mode == "raw" else improved(mesh, domain, target, smooth)).n_quads, 0
     tight = tightened(field, target)
     raw = generated(domain, tight, options)
-    mesh, report = guaranteed(raw, domain, tight, field, GuaranteeOptions(smooth=smooth))
-    return mesh.n_quads, len(report.elements)
+    # as the pipeline does it: with the meshes made again where some elements cannot be repaired
+    best = promised(domain, field, tight, raw, options, GuaranteeOptions(smooth=smooth))
+    return best.mesh.n_quads, len(best.report.elements)
 
 
 def memory(kind: str) -> int:

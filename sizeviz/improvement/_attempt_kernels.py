@@ -38,6 +38,8 @@ Measured on 23,000 trials: of the operations that stand in the end, 1 in 100 is 
 """
 TURNED = (1 << 3) | (1 << 7)
 """The notes of both turns of the edge that a swap has made: it lies behind the third corner of both its elements."""
+LAST_DEMAND = 0.01
+"""Quality demanded below which a rescue may leave some of the elements below it, if it leaves fewer of them."""
 RELAXED = 0.1
 """Decrease of a sweep at which the surroundings of an operation have settled."""
 
@@ -250,6 +252,19 @@ def better(before, after, change, law):
 
 
 @compiled
+def number_below(demand, region, n, patch, inv, objective):
+    """Return how many elements of a region have a shape quality below the one demanded of a last rescue.
+
+    Above ``LAST_DEMAND`` it is not asked, and 0.
+    """
+    low = 0
+    if 0.0 < demand < LAST_DEMAND:
+        for i in range(n):
+            low += element_measures(region[i], patch, inv, objective)[2] < demand
+    return low
+
+
+@compiled
 def memo(kind, code, arg, patch):
     """Return an element and the bit of its note that a swap or a collapse has been tried, or bit 0 for the others.
 
@@ -308,13 +323,16 @@ def tried_out(kind, code, arg, change, patch, topo, marks, aims, rails, law, roo
     if n < 0 or n_before + 8 > len(region):
         return 0
     before = measure(region, n_before, patch, aims, law[0])
+    low = number_below(law[4], region, n_before, patch, aims[2], law[0])
     save_links(old, n_old, core, n_core, patch, kept)
     save_places(nodes, n, region, n_before, patch, rails, aims, kept)
     fits = exchange(old, n_old, new, n_new, slots, patch)
     for i in range(n_spots):
         v = int(spots[i, 0])
         patch[0][v, 0], patch[0][v, 1] = spots[i, 1], spots[i, 2]
-    if fits and relaxed_better(before, change, n_core, n, n_old, n_new, patch, marks, aims, rails, law, room, tops):
+    if fits and relaxed_better(
+        before, low, change, n_core, n, n_old, n_new, patch, marks, aims, rails, law, room, tops
+    ):  # fmt: skip
         settle(kind, n_old, n_new, n_core, patch[3], room, tops)
         return n
     restore_links(old, n_old, core, n_core, slots, n_new, patch, kept)
@@ -333,8 +351,12 @@ def inherit(slots, n_new, n_old, bound):
 
 
 @compiled
-def relaxed_better(before, change, n_core, n, n_old, n_new, patch, marks, aims, rails, law, room, tops):
-    """Relax around a change just made and judge it."""
+def relaxed_better(before, low, change, n_core, n, n_old, n_new, patch, marks, aims, rails, law, room, tops):
+    """Relax around a change just made and judge it.
+
+    Where inverted elements lie side by side no single operation mends all of them; the last rescue, before which
+    ``low`` elements were below what it demands, takes one that leaves fewer.
+    """
     slots, nodes, region, star = room[4], room[6], room[13], room[9]
     inherit(slots, n_new, n_old, aims[4])
     aim_elements(slots, n_new, patch, aims)
@@ -349,7 +371,9 @@ def relaxed_better(before, change, n_core, n, n_old, n_new, patch, marks, aims, 
     ):  # fmt: skip
         return False
     aim_elements(region, n_after, patch, aims)
-    if not better(before, measure(region, n_after, patch, aims, law[0]), change, law):
+    if not better(before, measure(region, n_after, patch, aims, law[0]), change, law) and (
+        low == 0 or number_below(law[4], region, n_after, patch, aims[2], law[0]) >= low
+    ):
         return False
     finish(nodes, n, patch, marks[4], aims, pull, rails, star)
     for i in range(n_after):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from sizeviz.conformity import shape_quality
 from sizeviz.geometry import QuadMesh
@@ -40,6 +41,22 @@ def test_a_flat_boundary_node_with_one_element_gets_another() -> None:
     quads[2], quads[3] = (2, 3, 4, 11), (2, 11, 10, 9)
     work = prepared(QuadMesh(mesh.points, quads, mesh.curve, mesh.fixed))
     assert len(work.below(0.05))
+    assert rescue(work, 0.3) == 0
+    result = work.result()
+    assert shape_quality(result).min() > 0.3
+    assert abs(result.areas.sum() - 1) < 1e-12
+    assert edge_uses(result).max() == 2
+    assert result.n_points - len(edge_uses(result)) + result.n_quads == 1
+
+
+@pytest.mark.parametrize(("n", "turned"), [(6, (2, 4)), (4, (0, 2)), (8, (1, 3, 5))])
+def test_flat_elements_side_by_side_are_mended_one_after_the_other(n: int, turned: tuple[int, ...]) -> None:
+    mesh = disturbed(n, 0.0, 0)
+    quads, width = mesh.quads.copy(), n + 1
+    for i in turned:
+        quads[i], quads[i + 1] = (i, i + 1, i + 2, i + 2 + width), (i, i + 2 + width, i + 1 + width, i + width)
+    work = prepared(QuadMesh(mesh.points, quads, mesh.curve, mesh.fixed))
+    assert len(work.below(1e-3)) == len(turned)
     assert rescue(work, 0.3) == 0
     result = work.result()
     assert shape_quality(result).min() > 0.3
