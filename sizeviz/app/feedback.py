@@ -129,7 +129,8 @@ class Toast(QFrame):
         parent = self.parentWidget()
         width = min(parent.width() - 60, 640)
         self.setFixedWidth(max(width, 200))
-        self.adjustSize()
+        self.layout().activate()  # the words' height follows from the width that the buttons leave them
+        self.resize(self.width(), self.layout().totalHeightForWidth(self.width()))
         self.move((parent.width() - self.width()) // 2, parent.height() - self.height() - 84)
 
     def _copy(self) -> None:

@@ -5,11 +5,44 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QEvent, QObject, QPoint, Qt
-from qtpy.QtGui import QKeySequence
-from qtpy.QtWidgets import QFrame, QGridLayout, QLabel, QLineEdit, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+from qtpy.QtGui import QKeySequence, QPalette
+from qtpy.QtWidgets import (
+    QFrame,
+    QGridLayout,
+    QLabel,
+    QLineEdit,
+    QListWidget,
+    QListWidgetItem,
+    QStyledItemDelegate,
+    QVBoxLayout,
+    QWidget,
+)
 
 if TYPE_CHECKING:
+    from qtpy.QtCore import QModelIndex
+    from qtpy.QtGui import QPainter
+    from qtpy.QtWidgets import QStyleOptionViewItem
+
     from sizeviz.app.actions import Actions
+
+
+KEYS = Qt.ItemDataRole.UserRole + 1
+"""Role of a command's shortcut in the list."""
+
+
+class _KeysAtTheRight(QStyledItemDelegate):
+    """Writes each command's shortcut at the right end of its line, quietly."""
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex) -> None:
+        """Draw the line, then the keys."""
+        super().paint(painter, option, index)
+        muted = option.palette.color(QPalette.ColorRole.Text)
+        muted.setAlphaF(0.6)
+        painter.save()
+        painter.setPen(muted)
+        edge = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight
+        painter.drawText(option.rect.adjusted(0, 0, -10, 0), edge, index.data(KEYS) or "")
+        painter.restore()
 
 
 class CommandPalette(QFrame):
@@ -26,6 +59,7 @@ class CommandPalette(QFrame):
         self.list = QListWidget()
         self.list.setAccessibleName("Matching commands")
         self.list.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.list.setItemDelegate(_KeysAtTheRight(self.list))
         column = QVBoxLayout(self)
         column.setContentsMargins(10, 10, 10, 10)
         column.addWidget(self.query)
@@ -56,8 +90,10 @@ class CommandPalette(QFrame):
                 scored.append((rank, command.title, command.name, command.group, action))
         for _, title, name, group, action in sorted(scored, key=lambda entry: entry[0]):
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-            item = QListWidgetItem(f"{group}:  {title}" + (f"     {keys}" if keys else ""))
+            item = QListWidgetItem(f"{group}:  {title}")
             item.setData(Qt.ItemDataRole.UserRole, name)
+            item.setData(KEYS, keys)
+            item.setData(Qt.ItemDataRole.AccessibleDescriptionRole, keys)
             self.list.addItem(item)
         self.list.setCurrentRow(0)
 
@@ -133,6 +169,13 @@ class ShortcutOverlay(QFrame):
         self.show()
         self.raise_()
         self.setFocus()
+
+    def event(self, event: QEvent) -> bool:
+        """Take keys that are somebody's shortcut too: while the overlay is up, they close it and do nothing else."""
+        if event.type() == QEvent.Type.ShortcutOverride:
+            event.accept()
+            return True
+        return bool(super().event(event))
 
     def keyPressEvent(self, event: object) -> None:
         """Close."""

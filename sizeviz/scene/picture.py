@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from sizeviz.scene.view import ViewState
 if TYPE_CHECKING:
     from sizeviz.conformity import Measure
     from sizeviz.geometry import QuadMesh
-    from sizeviz.scene.spec import SceneSpec
+    from sizeviz.scene.spec import Bounds, SceneSpec
     from sizeviz.scene.subject import Subject
     from sizeviz.scene.view import Quantity
     from sizeviz.study import Study
@@ -36,6 +37,8 @@ def save_picture(
     width: int = 1400,
     edges: bool | None = None,
     dark: bool = False,
+    view: ViewState | None = None,
+    bounds: Bounds | None = None,
 ) -> Path:
     """Write one picture with its verdict and colour bar.
 
@@ -57,6 +60,10 @@ def save_picture(
         Whether element edges are drawn; by default below 12,000 elements.
     dark : bool
         Dark ground.
+    view : ViewState, optional
+        A whole pane's choices, colour bar included; method, quantity and measure are then taken from it.
+    bounds : (4,) floats, optional
+        ``xmin, ymin, xmax, ymax`` of what is shown, in model units; by default all there is.
 
     Returns
     -------
@@ -69,18 +76,14 @@ def save_picture(
         If there is nothing of that kind to show, or the place cannot be written.
     """
     path = Path(path)
-    shown = as_subject(subject, method)
+    view = view or ViewState(method=method, color_by=color_by, measure=measure)
+    shown = as_subject(subject, view.method)
     count = 0 if shown.mesh is None else shown.mesh.n_quads
-    view = ViewState(
-        method=method,
-        color_by=color_by,
-        measure=measure,
-        edges=count < EDGES_BELOW if edges is None else edges,
-        dark=dark,
-    )
-    spec = compose(shown, view)
+    spec = compose(shown, view.with_changes(edges=count < EDGES_BELOW if edges is None else edges, dark=dark))
     if spec.scale is None:
-        raise InputError(f"cannot colour by {color_by}: {spec.verdict}")
+        raise InputError(f"cannot colour by {view.color_by}: {spec.verdict}")
+    if bounds is not None:
+        spec = replace(spec, bounds=bounds)
     if path.suffix.lower() in VECTOR_SUFFIXES:
         return save_vector(spec, path, width=width / 200.0)
     _sheet(spec, width).save(path)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from qtpy.QtCore import QEvent, QSignalBlocker, QSize, Qt, Signal
+from qtpy.QtCore import QEvent, QRect, QSignalBlocker, QSize, Qt, Signal
 from qtpy.QtGui import QFontMetrics
 from qtpy.QtWidgets import (
     QComboBox,
@@ -215,7 +215,12 @@ class Menu(QComboBox):
     def sizeHint(self) -> QSize:
         """Return room for the longest entry, the arrow, and the space that the style sheet puts around them."""
         widest = max((self.fontMetrics().horizontalAdvance(self.itemText(k)) for k in range(self.count())), default=0)
-        return QSize(widest + 42, super().sizeHint().height())
+        option = QStyleOptionComboBox()
+        self.initStyleOption(option)
+        option.rect = QRect(0, 0, 400, 40)
+        field = QStyle.SubControl.SC_ComboBoxEditField
+        inner = self.style().subControlRect(QStyle.ComplexControl.CC_ComboBox, option, field, self).width()
+        return QSize(widest + 400 - inner + 4, super().sizeHint().height())
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the menu, its words ending in an ellipsis where there is no room for all of them."""

@@ -26,6 +26,10 @@ RADIUS_STEP = 1.15
 """Factor of one press of [ or ], or of one notch of the wheel."""
 
 
+DAB = 25.0
+"""Elements across half a dab of the brush at first: fine, but a long stroke asks for thousands and not for millions."""
+
+
 class PaintPanel(Form):
     """Settings of the brush, and the switch that takes it up."""
 
@@ -101,7 +105,7 @@ class PaintPanel(Form):
         """Choose a radius and a size that suit a field of the given extent, in model units."""
         self.radius.set_value(0.06 * extent)
         low, high = float(field.sizes.min()), float(field.sizes.max())
-        self.value.set_value(low if low < 0.5 * high else 0.2 * high)
+        self.value.set_value(max(low if low < 0.5 * high else 0.2 * high, 0.06 * extent / DAB))
         self.mask_low.set_value(low)
         self.mask_high.set_value(high)
 

@@ -110,9 +110,14 @@ class Pane(QFrame):
         """Give the rule that says whether elements are now large enough for their edges."""
         self._edges = rule
 
+    @property
+    def shows_edges(self) -> bool:
+        """Whether elements are now large enough for their edges."""
+        return self._edges()
+
     def update_edges(self) -> None:
         """Draw or hide element edges as the zoom asks."""
-        self.surface.canvas.show_edges(self._edges())
+        self.surface.canvas.show_edges(self.shows_edges)
 
     def set_view(self, view: ViewState, tell: bool = True) -> None:
         """Show something else."""

@@ -253,6 +253,11 @@ class Surface(QWidget):
         self._fitted = True
 
     @property
+    def shows_all(self) -> bool:
+        """Whether nobody has looked elsewhere since everything was shown."""
+        return self._fitted
+
+    @property
     def aspect(self) -> float:
         """Width to height."""
         return self.width() / max(self.height(), 1)
