@@ -169,21 +169,23 @@ def brush(folder: Path, quick: bool) -> None:
     shown = []
     first.surface.canvas.view.frameSwapped.connect(lambda: shown.append(time.perf_counter()))
     preview = []
-    controller.preview_changed.connect(lambda: preview.append(controller.preview))
+    controller.painting.changed.connect(lambda: preview.append(controller.painting.preview))
     glass = first.surface.glass
     person.drag(first, [(0.2, 0.2), (0.25, 0.25)], lift=False)
     for k in range(24):
         person.wait(lambda: not controller.jobs.is_busy, 300)
         person.rest(60)
         at = person.spot(first, 0.26 + 0.02 * k, 0.26 + 0.015 * k)
-        before = None if controller.preview is None else controller.preview.targets.get("size-preserving")
+        before = (
+            None if controller.painting.preview is None else controller.painting.preview.targets.get("size-preserving")
+        )
         shown.clear()
         began, cpu = time.perf_counter(), time.process_time()
         QTest.mouseMove(glass, at + QPoint(0, 0))
         spin(lambda: shown)
         repaints.append(shown[0] - began)
         cpus.append(time.process_time() - cpu)
-        spin(lambda before=before: controller.preview.targets.get("size-preserving") is not before)
+        spin(lambda before=before: controller.painting.preview.targets.get("size-preserving") is not before)
         frames = second.surface.canvas.view.frames
         for _ in range(200):
             if second.surface.canvas.view.frames > frames:
@@ -193,7 +195,7 @@ def brush(folder: Path, quick: bool) -> None:
     tell("brush event to repaint, median", 1000 * statistics.median(repaints), "ms", 33)
     tell("  the same in CPU time of the process", 1000 * statistics.median(cpus), "ms", 33)
     tell("limited and preserved at 513², median", 1000 * statistics.median(previews), "ms", 100)
-    controller.abort_stroke()
+    controller.painting.abort()
     window.close()
 
 

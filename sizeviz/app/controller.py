@@ -11,13 +11,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from qtpy.QtCore import QObject, QTimer, Signal
+from qtpy.QtCore import QObject, Signal
 
-from sizeviz.app.brush.live import LiveStroke, Painted, covers_nothing, stroke_words
-from sizeviz.app.engine import LIMITED, LIVE_NODES, PRESERVED, Engine, Preview, Processed, with_field
+from sizeviz.app.brush.live import Painted
+from sizeviz.app.brush.painting import PREVIEW, Painting
 from sizeviz.app.inspect.locate import ElementLocator
 from sizeviz.app.jobs import Failure, Job, JobRunner
 from sizeviz.app.news import Displayed, Notice
+from sizeviz.app.pace import Pace
 from sizeviz.app.store import StudyStore
 from sizeviz.errors import SizevizError
 from sizeviz.scene.subject import METHOD_TITLES, Subject, subject_of
@@ -25,20 +26,18 @@ from sizeviz.scene.subject import METHOD_TITLES, Subject, subject_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from sizeviz.app.engine import Engine
     from sizeviz.geometry import QuadMesh
     from sizeviz.sizing import SizeField
     from sizeviz.sources import Source
-    from sizeviz.sources.painting import Brush, Stroke, StrokeShape
+    from sizeviz.sources.painting import Stroke
     from sizeviz.study import Study, StudyOptions
 
 AUTO_SECONDS = 3.0
-"""Studies whose last run took no longer than this are run again by themselves after every change."""
+"""Studies whose next run should take no longer than this are run again by themselves after every change."""
 
 MERGE_SECONDS = 1.5
 """Changes of one control that follow each other faster than this are one undo step."""
-
-PREVIEW = "preview"
-"""Title of the jobs that process a field while the brush moves."""
 
 LOG = logging.getLogger(__name__)
 
@@ -57,14 +56,14 @@ class Controller(QObject):
     -------
     study_changed(Study or None, Study)
         The study was replaced; old and new.
-    preview_changed()
-        The brush shows something else, or nothing any more.
     progressed(float, str, float)
         Overall fraction, words, seconds left (negative while unknown).
     busy_changed(bool)
         Work began or ended.
     noticed(Notice)
         Something to tell.
+    refused()
+        A value cannot be; whoever shows it shows the study's again.
     opened(str)
         A source was opened, by what name it can be opened again.
     study_file_requested(str)
@@ -74,10 +73,10 @@ class Controller(QObject):
     """
 
     study_changed = Signal(object, object)
-    preview_changed = Signal()
     progressed = Signal(float, str, float)
     busy_changed = Signal(bool)
     noticed = Signal(object)
+    refused = Signal()
     opened = Signal(str)
     study_file_requested = Signal(str)
     settled = Signal()
@@ -89,15 +88,12 @@ class Controller(QObject):
         self.jobs = JobRunner(self)
         self.wanted: tuple[str, ...] = ("gradient-limiting", "size-preserving")
         self.automatic = True
-        self.stroke: LiveStroke | None = None
-        self.preview: Preview | None = None
+        self.painting = Painting(engine, self.store, self.jobs, self)
+        self.painting.lifted.connect(self._after_edit)
         self._last_good: dict[str, Subject] = {}
         self._locators: WeakKeyDictionary[QuadMesh, ElementLocator] = WeakKeyDictionary()
-        self._painted: WeakKeyDictionary[Source, Painted] = WeakKeyDictionary()
         self._last_edit = ("", 0.0, 0)
-        self._last_seconds: dict[str, float] = {}
-        self._preview_due = False
-        self._processed: Processed | None = None
+        self._pace = Pace()
         self._batch = 0
         self.store.changed.connect(self._on_changed)
         self.jobs.started.connect(lambda job: self.busy_changed.emit(self.is_running))
@@ -136,9 +132,10 @@ class Controller(QObject):
                     detail=last.detail,
                     target=subject.target or last.target,
                 )
-        if self.preview is not None:
-            target = self.preview.targets.get(method, subject.target)
-            subject = replace(subject, prescribed=self.preview.field, target=target)
+        preview = self.painting.preview
+        if preview is not None:
+            target = preview.targets.get(method, subject.target)
+            subject = replace(subject, prescribed=preview.field, target=target)
             stale = subject.mesh is not None
         return Displayed(subject, stale)
 
@@ -160,13 +157,10 @@ class Controller(QObject):
         """Take locators that a worker has built."""
         self._locators.update(locators)
 
-    def painted(self, source: Source) -> Painted:
-        """Return how a source was painted, so far as it was."""
-        return self._painted.get(source) or Painted(source.field)
-
     def is_cheap(self) -> bool:
         """Return whether a change may start a run by itself."""
-        return self.automatic and sum(self._last_seconds.values()) <= AUTO_SECONDS
+        study = self.study
+        return self.automatic and (study is None or self._pace.seconds_for(study) <= AUTO_SECONDS)
 
     # -- intents: sources and options ------------------------------------------------------------------------------
 
@@ -191,15 +185,18 @@ class Controller(QObject):
         from sizeviz.study import Study
 
         study = self.study
-        self._last_seconds.clear()
+        self._pace = Pace()
         options = self.engine.default_options() if study is None else study.options
         self.store.commit(Study(source, options), words)
         self.apply()
 
     def set_study(self, study: Study, strokes: Sequence[Stroke], original: SizeField | None, words: str) -> None:
         """Show a whole study, with what was painted and what it results in; only what it lacks is run."""
-        self._painted[study.source] = Painted(original or study.source.field, tuple(strokes))
-        self._last_seconds = {name: run.total_seconds for name, run in study.runs.items() if run.is_complete}
+        self.painting.remember(study.source, Painted(original or study.source.field, tuple(strokes)))
+        self._pace = Pace()
+        for name, run in study.runs.items():
+            if run.is_complete:
+                self._pace.note(study, name)
         self.store.commit(study, words)
         self.apply()
         if not self.missing():
@@ -239,103 +236,17 @@ class Controller(QObject):
 
     def undo(self) -> None:
         """Go one step back."""
-        self.abort_stroke()
+        self.painting.abort()
         self.store.stack.undo()
         self._after_edit()
 
     def redo(self) -> None:
         """Go one step forward again."""
-        self.abort_stroke()
+        self.painting.abort()
         self.store.stack.redo()
         self._after_edit()
 
-    # -- intents: painting -----------------------------------------------------------------------------------------
-
-    def begin_stroke(self, brush: Brush, shape: StrokeShape, x: float, y: float) -> None:
-        """Put the brush down."""
-        study = self.study
-        if study is None:
-            return
-        source = study.source
-        self.stroke = LiveStroke(source.field, brush, shape, self.painted(source).original)
-        self.extend_stroke(x, y)
-
-    def extend_stroke(self, x: float, y: float) -> None:
-        """Move the brush."""
-        if self.stroke is not None:
-            self.stroke.extend(x, y)
-            self._show_stroke()
-
-    def reshape_stroke(self, path: list[tuple[float, float]]) -> None:
-        """Give a line or polygon under way another path."""
-        if self.stroke is not None and path:
-            self.stroke.replace_path(path)
-            self._show_stroke()
-
-    def end_stroke(self) -> None:
-        """Lift the brush: the stroke becomes one undo step, and the mesh follows."""
-        study, live, self.stroke = self.study, self.stroke, None
-        if study is None or live is None:
-            return
-        self.preview = None
-        if covers_nothing(live.stroke, live.base):
-            self.preview_changed.emit()
-            return
-        painted = self.painted(study.source).with_stroke(live.stroke)
-        source = with_field(study.source, live.field, len(painted.strokes))
-        self._painted[source] = painted
-        self.store.commit(study.with_source(source), f"Paint: {stroke_words(live.brush)}")
-        self.preview_changed.emit()
-        self._after_edit()
-
-    def abort_stroke(self) -> None:
-        """Drop the stroke under way; nothing was changed."""
-        if self.stroke is not None or self.preview is not None:
-            self.stroke = self.preview = None
-            self.preview_changed.emit()
-
     # -- inside ----------------------------------------------------------------------------------------------------
-
-    def _show_stroke(self) -> None:
-        assert self.stroke is not None
-        targets = self.preview.targets if self.preview is not None else {}
-        self.preview = Preview(self.stroke.field, targets)
-        self.preview_changed.emit()
-        if len(self.preview.field.sizes) <= LIVE_NODES:
-            self._request_preview()
-
-    def _request_preview(self) -> None:
-        """Ask for the processed fields of the stroke; while one answer is awaited, only the next is remembered."""
-        running = self.jobs.running
-        if running is not None and running.title == PREVIEW:
-            self._preview_due = True
-            return
-        self._preview_due = False
-        preview, study = self.preview, self.study
-        if preview is None or study is None:
-            return
-        field, options, since = preview.field, study.options, self._since(study)
-
-        def show(targets: dict[str, SizeField]) -> None:
-            self._processed = Processed(field, options, targets)
-            if self.stroke is None or self.preview is None:
-                return
-            self.preview = Preview(self.preview.field, targets)
-            self.preview_changed.emit()
-            if self._preview_due:
-                self._later(self._request_preview)
-
-        self.jobs.submit(Job(PREVIEW, lambda monitor: self.engine.targets(field, options, since, monitor), show))
-
-    def _since(self, study: Study) -> Processed | None:
-        """Return the newest fields that the next preview can start from: the last preview's, or the study's own."""
-        known = self._processed
-        if known is not None and known.field.background is study.source.field.background:
-            return known
-        targets = {name: run.target for name, run in study.runs.items() if run.target is not None}
-        if LIMITED in targets and PRESERVED in targets:
-            return Processed(study.source.field, study.options, {name: targets[name] for name in (LIMITED, PRESERVED)})
-        return None
 
     def _run_next(self, method: str) -> None:
         study = self.study
@@ -353,7 +264,7 @@ class Controller(QObject):
             run = result.runs[method]
             if run.mesh is not None and locator is not None:
                 self._locators[run.mesh] = locator
-            self._last_seconds[method] = run.total_seconds
+            self._pace.note(result, method)
             self.store.amend(result)
             missing = self.missing()
             if missing:
@@ -373,9 +284,6 @@ class Controller(QObject):
         else:
             self.jobs.cancel()
 
-    def _later(self, call: Callable[[], object]) -> None:
-        QTimer.singleShot(0, call)
-
     def _merge_key(self, key: str) -> str:
         if not key:
             return ""
@@ -391,6 +299,7 @@ class Controller(QObject):
             call()
         except SizevizError as error:
             self.noticed.emit(Notice("error", str(error)))
+            self.refused.emit()
 
     def _on_changed(self, old: Study | None, new: Study) -> None:
         for method, run in new.runs.items():
@@ -406,7 +315,7 @@ class Controller(QObject):
             return
         waiting = len(self.missing())
         if left >= 0 and waiting > 1:
-            left += (waiting - 1) * (sum(self._last_seconds.values()) or left / max(1.0 - fraction, 0.1))
+            left += (waiting - 1) * (self._pace.seconds or left / max(1.0 - fraction, 0.1))
         done = max(self._batch - waiting, 0)
         overall = (done + fraction) / (done + waiting) if waiting else fraction
         self.progressed.emit(overall, message, left)

@@ -146,7 +146,7 @@ class StudyFiles(QObject):
 
         study = self._controller.study
         assert study is not None
-        painted = self._controller.painted(study.source)
+        painted = self._controller.painting.painted(study.source)
         original = painted.original if painted.strokes else None
         origin = None if self.path is None else str(self.path)
         return StudyFile(study, painted.strokes, original, self._view(), origin)
@@ -182,7 +182,7 @@ class StudyFiles(QObject):
         """Keep a copy of what would be lost, beside the window's thread."""
         if not self.is_modified or self._controller.study is self._kept:
             return
-        if self._saving.is_busy or self._controller.stroke is not None:
+        if self._saving.is_busy or self._controller.painting.stroke is not None:
             self._timer.start()
             return
         content = self.content()

@@ -49,11 +49,12 @@ def connect_panels(window: MainWindow) -> None:
     window.progress.cancel_requested.connect(controller.cancel)
     controller.study_changed.connect(lambda old, new: _on_study(window, old, new))
     controller.store.stack.indexChanged.connect(lambda index: window.show_state())
-    controller.preview_changed.connect(board.refresh)
+    controller.painting.changed.connect(board.refresh)
     controller.busy_changed.connect(window.progress.show_busy)
     controller.busy_changed.connect(lambda busy: window.show_state())
     controller.progressed.connect(window.progress.show_progress)
     controller.noticed.connect(window.toast.tell)
+    controller.refused.connect(window.show_options)
     controller.opened.connect(window.settings.remember_source)
     board.views_changed.connect(lambda: _on_views(window))
     board.active_changed.connect(lambda pane: window.show_judgement())
@@ -180,17 +181,18 @@ def copy_recipe(window: MainWindow, language: str) -> None:
 
 
 def save_picture(window: MainWindow, path: str | None = None) -> None:
-    """Save what the active pane shows, colour bar and verdict included; asks for the place if none is given."""
+    """Save what the active pane shows, its zoom, colours and verdict included; asks for the place if none is given."""
     from sizeviz.scene.picture import save_picture as save
 
     pane = window.board.active
     path = path or _ask_picture(window, "picture.png")
     if not path:
         return
-    subject, view = pane.subject, pane.view.with_changes(dark=window.theme.dark)
+    subject, view, surface = pane.subject, pane.view, pane.surface
+    bounds = None if surface.shows_all else surface.camera.box(surface.aspect)
 
     def work() -> None:
-        save(subject, path, color_by=view.color_by, measure=view.measure, dark=view.dark)
+        save(subject, path, view=view, dark=window.theme.dark, edges=pane.shows_edges, bounds=bounds)
 
     _saved(window, path, work)
 
@@ -238,7 +240,7 @@ def _connect_keys(window: MainWindow) -> None:
 
 
 def _escape(window: MainWindow) -> None:
-    if window.controller.stroke is not None:
+    if window.controller.painting.stroke is not None:
         window.tool.abort()
     elif window.lessons.escape():
         return

@@ -246,11 +246,16 @@ class MainWindow(QMainWindow):
             self.turns.take({**docks, self.board: self._leave_welcome})
         self.show_title()
         self.source.show_source(study.source)
-        for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):
-            panel.show_options(study.options)
+        self.show_options()
         self.board.refresh()
         self.show_judgement()
         self.show_state()
+
+    def show_options(self) -> None:
+        """Show the study's options, whatever was typed."""
+        if self.controller.study is not None:
+            for panel in (self.size_panel, self.mesh_panel, self.smooth_panel):
+                panel.show_options(self.controller.study.options)
 
     def _leave_welcome(self) -> None:
         if not self._laid_out:

@@ -64,8 +64,8 @@ def with_unsaved_paint(window) -> None:
     controller = window.controller
 
     def paint() -> None:
-        controller.begin_stroke(Brush(mode="set", radius=0.1, value=0.02), "freehand", 0.5, 0.5)
-        controller.end_stroke()
+        controller.painting.begin(Brush(mode="set", radius=0.1, value=0.02), "freehand", 0.5, 0.5)
+        controller.painting.end()
         window.close()
 
     _when(lambda: controller.study is not None, paint)

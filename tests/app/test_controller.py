@@ -21,10 +21,10 @@ def with_alpha(alpha: float):
 
 def stroke(controller, path, brush=None) -> None:
     brush = brush or Brush(radius=0.1, value=0.005)
-    controller.begin_stroke(brush, "freehand", *path[0])
+    controller.painting.begin(brush, "freehand", *path[0])
     for point in path[1:]:
-        controller.extend_stroke(*point)
-    controller.end_stroke()
+        controller.painting.extend(*point)
+    controller.painting.end()
 
 
 def test_opening_runs_both_methods_and_says_when_all_is_there(qtbot, controller, engine) -> None:
@@ -63,6 +63,20 @@ def test_a_slow_study_waits_for_apply(qtbot, controller, engine, monkeypatch) ->
     with qtbot.waitSignal(controller.settled, timeout=5000):
         controller.apply()
     assert engine.calls == ["run size-preserving"]
+
+
+def test_a_stroke_that_asks_for_many_more_elements_waits_for_apply(qtbot, controller, engine, monkeypatch) -> None:
+    engine.seconds = 0.05
+    open_ring(qtbot, controller)
+    monkeypatch.setattr("sizeviz.app.controller.AUTO_SECONDS", 1.0)
+    engine.calls.clear()
+    stroke(controller, [(0.3, 0.5), (0.7, 0.5)], Brush(radius=0.1, value=0.0005))
+    qtbot.wait(80)
+    assert not any(call.startswith("run") for call in engine.calls) and controller.missing()
+    with qtbot.waitSignal(controller.settled, timeout=5000):
+        controller.undo()
+        stroke(controller, [(0.3, 0.5), (0.7, 0.5)], Brush(radius=0.02, value=0.015))
+    assert any(call.startswith("run") for call in engine.calls)
 
 
 def test_undo_brings_back_results_without_running_again(qtbot, controller, engine) -> None:
@@ -169,31 +183,31 @@ def test_a_stroke_is_one_step_and_reaches_only_the_nodes_under_it(qtbot, control
 
 def test_while_a_stroke_is_drawn_field_and_targets_follow(qtbot, controller) -> None:
     open_ring(qtbot, controller)
-    controller.begin_stroke(Brush(radius=0.2, value=0.001), "freehand", 0.5, 0.5)
+    controller.painting.begin(Brush(radius=0.2, value=0.001), "freehand", 0.5, 0.5)
     shown = controller.displayed("size-preserving")
     assert shown.subject.prescribed.sizes.min() == 0.001 and shown.stale
-    qtbot.waitUntil(lambda: bool(controller.preview and controller.preview.targets), timeout=3000)
+    qtbot.waitUntil(lambda: bool(controller.painting.preview and controller.painting.preview.targets), timeout=3000)
     assert controller.displayed("size-preserving").subject.target.sizes.min() == pytest.approx(0.0007)
     assert controller.displayed("gradient-limiting").subject.target.sizes.min() == pytest.approx(0.00095)
-    controller.abort_stroke()
+    controller.painting.abort()
     assert controller.displayed("size-preserving").subject.prescribed.sizes.min() > 0.001
     assert controller.store.stack.count() == 0 and not controller.displayed("size-preserving").stale
 
 
 def test_a_large_field_is_painted_without_the_processed_fields(qtbot, controller, engine, monkeypatch) -> None:
-    monkeypatch.setattr("sizeviz.app.controller.LIVE_NODES", 100)
+    monkeypatch.setattr("sizeviz.app.brush.painting.LIVE_NODES", 100)
     open_ring(qtbot, controller)
     engine.calls.clear()
-    controller.begin_stroke(Brush(radius=0.2, value=0.001), "freehand", 0.5, 0.5)
+    controller.painting.begin(Brush(radius=0.2, value=0.001), "freehand", 0.5, 0.5)
     qtbot.wait(60)
-    assert engine.calls == [] and controller.preview is not None
-    controller.abort_stroke()
+    assert engine.calls == [] and controller.painting.preview is not None
+    controller.painting.abort()
 
 
 def test_a_stroke_beside_the_field_is_no_step(qtbot, controller) -> None:
     open_ring(qtbot, controller)
     stroke(controller, [(5.0, 5.0)])
-    assert controller.store.stack.count() == 0 and controller.preview is None
+    assert controller.store.stack.count() == 0 and controller.painting.preview is None
 
 
 def test_erasing_after_two_strokes_brings_the_original_back(qtbot, controller) -> None:

@@ -18,9 +18,9 @@ from sizeviz.study.storage.autosave import leftovers
 
 
 def paint(controller, x: float = 0.3, size: float = 0.004) -> None:
-    controller.begin_stroke(Brush(radius=0.1, value=size), "freehand", x, 0.4)
-    controller.extend_stroke(x + 0.3, 0.5)
-    controller.end_stroke()
+    controller.painting.begin(Brush(radius=0.1, value=size), "freehand", x, 0.4)
+    controller.painting.extend(x + 0.3, 0.5)
+    controller.painting.end()
 
 
 def notices(window) -> list:
@@ -59,7 +59,7 @@ def test_a_painted_study_comes_back_with_strokes_original_and_view(qtbot, opened
         window.controller.open_source(str(tmp_path / "two strokes.sizeviz"))
     study = window.controller.study
     assert np.array_equal(study.source.field.sizes, sizes)
-    known = window.controller.painted(study.source)
+    known = window.controller.painting.painted(study.source)
     assert np.array_equal(known.original.sizes, original.sizes) and len(known.strokes) == 2
     again = known.original
     for stroke in known.strokes:
@@ -69,8 +69,8 @@ def test_a_painted_study_comes_back_with_strokes_original_and_view(qtbot, opened
     assert window.controller.engine.calls == []  # the results were in the file
     assert not window.files.is_modified and window.settings.recent[0].endswith("two strokes.sizeviz")
     eraser = Brush(mode="erase", radius=2.0, hardness=1.0)
-    window.controller.begin_stroke(eraser, "freehand", 0.5, 0.5)
-    window.controller.end_stroke()
+    window.controller.painting.begin(eraser, "freehand", 0.5, 0.5)
+    window.controller.painting.end()
     assert np.allclose(window.controller.study.source.field.sizes, original.sizes)
     window.close()
 

@@ -64,10 +64,10 @@ def test_painting_is_seen_while_the_button_is_down(window) -> None:
     window.paint.radius.set_value(0.2)
     before, target = person.look_at(pane), person.look_at(other)
     person.drag(pane, [(0.2, 0.2), (0.3, 0.2)], lift=False)
-    person.wait(lambda: bool(window.controller.preview.targets), 5.0)
+    person.wait(lambda: bool(window.controller.painting.preview.targets), 5.0)
     assert np.abs(person.look_at(pane).astype(int) - before.astype(int)).mean() > 2.0
     assert np.abs(person.look_at(other).astype(int) - target.astype(int)).mean() > 0.5
-    window.controller.abort_stroke()
+    window.controller.painting.abort()
     assert np.abs(person.look_at(pane).astype(int) - before.astype(int)).mean() < 2.0
 
 

@@ -99,7 +99,7 @@ def test_a_session(gl_window, tmp_path) -> None:
     beat.reset()
     for y in (0.3, 0.5, 0.7):
         person.drag(limited, [(0.2, y), (0.5, y + 0.05), (0.8, y)])
-        person.wait(lambda: controller.stroke is None)
+        person.wait(lambda: controller.painting.stroke is None)
         fields.append(controller.study.source.field)
     measured["longest gap, painting (ms)"] = round(1000 * beat.longest)
     assert len({id(field) for field in fields}) == 4 and controller.store.stack.count() == 3

@@ -242,10 +242,10 @@ def test_lines_and_polygons_are_clicked_and_finished(qtbot, opened, shape: str) 
     opened.paint.radius.set_value(0.03)
     for corner in ((0.2, 0.2), (0.8, 0.2), (0.5, 0.8)):
         qtbot.mouseClick(glass(opened), Qt.MouseButton.LeftButton, pos=at(opened, *corner))
-    assert opened.controller.store.stack.count() == 0 and opened.controller.stroke is not None
+    assert opened.controller.store.stack.count() == 0 and opened.controller.painting.stroke is not None
     glass(opened).setFocus()
     qtbot.keyClick(glass(opened), Qt.Key.Key_Return)
-    assert opened.controller.store.stack.count() == 1 and opened.controller.stroke is None
+    assert opened.controller.store.stack.count() == 1 and opened.controller.painting.stroke is None
     field = opened.controller.study.source.field
     inner = np.hypot(*(field.background.points - (0.5, 0.4)).T).argmin()
     filled = field.sizes[inner] == pytest.approx(opened.paint.brush().value)

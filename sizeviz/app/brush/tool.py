@@ -46,6 +46,7 @@ class PaintTool(QObject):
         board.pane_made.connect(self._adopt)
         panel.toggled.connect(self.set_active)
         panel.brush_changed.connect(lambda brush: self._redraw_ring())
+        controller.painting.changed.connect(self._redraw_ring)
 
     def set_active(self, active: bool) -> None:
         """Take the brush up, or put it down."""
@@ -66,15 +67,15 @@ class PaintTool(QObject):
         """Drop the stroke under way."""
         self._corners.clear()
         self._show_path(None)
-        self._controller.abort_stroke()
+        self._controller.painting.abort()
 
     def finish(self) -> None:
         """Close the line or polygon under way."""
         if len(self._corners) > 1:
-            self._controller.reshape_stroke(self._corners)
-            self._controller.end_stroke()
+            self._controller.painting.reshape(self._corners)
+            self._controller.painting.end()
         elif self._corners:
-            self._controller.abort_stroke()
+            self._controller.painting.abort()
         self._corners.clear()
         self._show_path(None)
 
@@ -94,20 +95,20 @@ class PaintTool(QObject):
     def _press(self, x: float, y: float) -> None:
         shape = self._panel.stroke_shape()
         if shape == "freehand":
-            self._controller.begin_stroke(self._panel.brush(), shape, x, y)
+            self._controller.painting.begin(self._panel.brush(), shape, x, y)
             return
         if not self._corners:
-            self._controller.begin_stroke(self._panel.brush(), shape, x, y)
+            self._controller.painting.begin(self._panel.brush(), shape, x, y)
         self._corners.append((x, y))
-        self._controller.reshape_stroke(self._corners)
+        self._controller.painting.reshape(self._corners)
 
     def _move(self, pane: Pane, x: float, y: float) -> None:
         if self._panel.stroke_shape() == "freehand":
-            self._controller.extend_stroke(x, y)
+            self._controller.painting.extend(x, y)
 
     def _release(self, x: float, y: float) -> None:
         if self._panel.stroke_shape() == "freehand":
-            self._controller.end_stroke()
+            self._controller.painting.end()
 
     def _hover(self, pane: Pane, x: float, y: float) -> None:
         if not self.active:
@@ -119,7 +120,8 @@ class PaintTool(QObject):
         glass.update()
 
     def _label(self, pane: Pane, x: float, y: float) -> str:
-        field = pane.subject.field("target" if pane.view.color_by == "target" else "prescribed")
+        subject = self._controller.displayed(pane.view.method).subject  # ahead of the pane, which waits for its turn
+        field = subject.field("target" if pane.view.color_by == "target" else "prescribed")
         value = value_at(field, x, y)
         return "" if value is None else f"{'h*' if pane.view.color_by == 'target' else 'h'} {value:.4g}"
 
@@ -131,7 +133,8 @@ class PaintTool(QObject):
         for pane in self._board.panes:
             ring = pane.surface.glass.ring
             if ring is not None:
-                pane.surface.glass.ring = Ring(ring.x, ring.y, self._panel.radius.value(), ring.label)
+                label = self._label(pane, ring.x, ring.y)
+                pane.surface.glass.ring = Ring(ring.x, ring.y, self._panel.radius.value(), label)
                 pane.surface.glass.update()
 
     def _show_path(self, tip: tuple[float, float] | None) -> None:

@@ -1,0 +1,98 @@
+"""Small things a person notices: keys, messages, menus, the brush's cursor, what a saved picture shows."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from app.driver import Person
+from app.fakes import fake_source
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import QApplication
+
+from sizeviz.app.news import Notice
+from sizeviz.app.palette import KEYS
+from sizeviz.app.panels.paint import PaintPanel
+
+
+def test_a_key_that_is_a_shortcut_only_closes_the_overlay(qtbot, opened) -> None:
+    for key in (Qt.Key.Key_Escape, Qt.Key.Key_B):
+        opened.actions_["shortcuts"].trigger()
+        qtbot.keyClick(opened.overlay, key)
+        assert not opened.overlay.isVisible() and not opened.tool.active
+
+
+def test_the_palette_names_a_command_s_keys_beside_it(opened) -> None:
+    opened.palette_.open()
+    opened.palette_.filter("fit to pane")
+    item = opened.palette_.list.item(0)
+    assert (item.text(), item.data(KEYS)) == ("View:  Fit to pane", "F")
+    assert not opened.palette_.grab().isNull()
+    opened.palette_.hide()
+
+
+def test_a_refused_number_gives_way_to_the_study_s(opened) -> None:
+    spin = opened.size_panel.alpha.spin
+    Person(opened).type_number(spin, "0")
+    assert "alpha is 0.0" in opened.toast.text.text()
+    assert spin.value() == opened.controller.study.options.preserve.alpha == 2.0
+
+
+def test_a_message_is_as_high_as_its_words(opened) -> None:
+    for words in ("short", "a message that goes on and on " * 8):
+        opened.toast.tell(Notice("error", words))
+        text = opened.toast.text
+        assert text.height() >= text.heightForWidth(text.width())
+        assert opened.toast.height() <= max(text.heightForWidth(text.width()), opened.toast.copy_button.height()) + 28
+
+
+def test_menus_of_a_pane_are_seen_whole_or_above_each_other(opened) -> None:
+    for width in (1100, 1250, 1400, 1600):
+        opened.resize(width, 900)
+        QApplication.processEvents()
+        for pane in opened.board.visible_panes:
+            for menu in (pane.method, pane.quantity):
+                assert menu.width() >= menu.sizeHint().width() or menu.width() > 0.8 * pane.width() - 20
+
+
+def test_the_size_under_the_brush_is_the_size_just_painted(qtbot, opened) -> None:
+    opened.actions_["paint"].trigger()
+    opened.paint.value.set_value(0.0123)
+    pane = opened.board.panes[0]
+    glass, spot = pane.surface.glass, Person(opened).spot(pane, 0.8, 0.8)
+    qtbot.mouseMove(glass, spot)
+    before = glass.ring.label
+    qtbot.mousePress(glass, Qt.MouseButton.LeftButton, pos=spot)
+    assert glass.ring.label == "h 0.0123" != before
+    qtbot.keyClick(opened, Qt.Key.Key_Escape)
+    assert glass.ring.label == before
+    qtbot.mouseRelease(glass, Qt.MouseButton.LeftButton, pos=spot)
+
+
+def test_a_brush_at_first_asks_for_thousands_of_elements_not_millions(qtbot) -> None:
+    panel = PaintPanel()
+    qtbot.addWidget(panel)
+    steep = fake_source("steep", 65, 1e-5).field
+    panel.suit(steep, 1.0)
+    dab = np.pi * (panel.brush().radius / panel.brush().value) ** 2
+    assert 500 < dab < 3000
+
+
+def test_a_saved_picture_is_what_the_pane_shows(opened, tmp_path) -> None:
+    from PIL import Image
+
+    from sizeviz.app.intents import save_picture
+
+    pane = opened.board.active
+    pane.set_view(pane.view.with_changes(cmap="viridis", classes=3))
+    save_picture(opened, str(tmp_path / "all.svg"))
+    mesh = pane.subject.mesh
+    shown = len(set(re.findall(r"fill: (#\w{6})", (tmp_path / "all.svg").read_text("utf-8"))))
+    assert shown < 16  # three classes, ground and ink; not one colour an element
+    opened.board.go_to(pane.view.method, mesh.n_quads // 2, 6.0)
+    save_picture(opened, str(tmp_path / "near.png"))
+    with Image.open(tmp_path / "near.png") as picture:
+        size = picture.size
+    surface = pane.surface
+    assert (size[0] - 2 * (size[0] // 40)) / surface.aspect == pytest.approx(size[1], abs=0.25 * size[1])
