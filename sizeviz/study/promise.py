@@ -35,8 +35,10 @@ LARGEST = 1.5
 """R above which an element's edge no longer tells how far to reach."""
 POOR, POOR_SHARE, POOR_REACH = 0.6, 0.8, 1.5
 """Shape quality from which down sizes are lowered although R <= 1; by how much, and how far around."""
-BETTER, DEARER = 2, 1.15
-"""How often this is tried, and what it may cost in elements."""
+BETTER, DEARER, FEW = 3, 1.15, 100
+"""How often this is tried, and what it may cost in elements: times their number, or so many."""
+FAR, FAR_SHARE = 0.5, 0.8
+"""Share of wrong elements from which nearly all of a mesh is lowered at once, where spots overlap; by how much then."""
 HOPELESS = 0.1
 """Share of wrong elements from which a mesh that is not the last is not repaired."""
 
@@ -115,15 +117,17 @@ def promised(
             break
         strict = options if n == len(REACH) - 1 else replace(options, hopeless=HOPELESS)
         last = _repaired(domain, reference, finer, mesh, strict, SubMonitor(part, 0.4, 1.0))
-        dear = held and last.mesh.n_quads > DEARER * best.mesh.n_quads
+        most = max(DEARER * best.mesh.n_quads, best.mesh.n_quads + FEW)
+        dear = held and last.mesh.n_quads > most
         if not dear and _demerit(last) <= _demerit(best):
             best = last
     monitor.step(1.0)
     return best
 
 
-def _demerit(promise: Promise) -> tuple[int, int]:
-    return len(promise.report.elements), len(_poor(promise))
+def _demerit(promise: Promise) -> tuple[int, int, float]:
+    poor = _poor(promise)
+    return len(promise.report.elements), len(poor), -float(shape_quality(promise.mesh)[poor].min(initial=1.0))
 
 
 def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: float) -> SizeField:
@@ -134,10 +138,12 @@ def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: 
     longest = np.sqrt(((np.roll(corner, -1, axis=1) - corner) ** 2).sum(axis=2).max(axis=1))
     least = reference.min_over(mesh.points, quads)
     ratio = longest / least
-    if held:
-        spots = POOR_REACH * least, np.full(len(quads), POOR_SHARE)
+    lowest = FAR_SHARE if len(quads) > FAR * mesh.n_quads else LEAST_SHARE
+    if held:  # the tight field may be far smaller than what the element is judged against
+        least = np.minimum(least, promise.tight.at(corner.mean(axis=1)))
+        spots = POOR_REACH * np.maximum(least, longest), np.full(len(quads), POOR_SHARE)
     else:  # of an element far too large, the part that its edges should have had
-        spots = reach * longest * np.minimum(1.0, LARGEST / ratio), np.clip(SHARE / ratio, LEAST_SHARE, MOST_SHARE)
+        spots = reach * longest * np.minimum(1.0, LARGEST / ratio), np.clip(SHARE / ratio, lowest, MOST_SHARE)
     return lowered(promise.tight, corner.mean(axis=1), *spots, spared * least)
 
 

@@ -7,12 +7,13 @@ import pytest
 
 from sizeviz.conformity import judged
 from sizeviz.errors import InputError
-from sizeviz.geometry import Domain
-from sizeviz.improvement import GuaranteeOptions, guaranteed, tightened
+from sizeviz.geometry import Domain, QuadMesh
+from sizeviz.improvement import GuaranteeOptions, GuaranteeReport, guaranteed, tightened
 from sizeviz.meshing import MeshOptions, generated
 from sizeviz.sizing import BackgroundMesh, Grid, PreserveOptions, SizeField, preserved
 from sizeviz.sources.shapes import shape
-from sizeviz.study.promise import promised
+from sizeviz.study import promise as module
+from sizeviz.study.promise import Promise, promised
 
 
 def jump() -> SizeField:
@@ -76,3 +77,38 @@ def test_a_gap_far_narrower_than_the_sizes_is_meshed_finely_enough() -> None:
     best = promised(domain, field, tight, generated(domain, tight, MeshOptions(scale=1.0)))
     assert best.report.holds
     assert judged(best.mesh, field).correct_percent["max-edge"] == 100.0
+
+
+def grid_with(points: np.ndarray, tight: float, left: np.ndarray) -> Promise:
+    """Return a grid of 10 x 10 elements made for an even tight field, of which some are left."""
+    first = (np.arange(10)[:, None] * 11 + np.arange(10)).ravel()
+    quads = np.column_stack([first, first + 1, first + 12, first + 11]).astype(np.int32)
+    mesh = QuadMesh(points, quads, np.full(121, -1, dtype=np.int32), np.zeros(121, dtype=bool))
+    background = BackgroundMesh.unit_square_grid(41, 41)
+    field = SizeField(background, np.full(41 * 41, tight), "even")
+    report = GuaranteeReport(100, left, np.full(len(left), 1.5), ("that no move could shorten",) * len(left))
+    return Promise(field, mesh, mesh, report)
+
+
+def ticks() -> np.ndarray:
+    y, x = np.mgrid[0:11, 0:11] / 10.0
+    return np.column_stack([x.ravel(), y.ravel()])
+
+
+def test_sizes_are_lowered_around_poor_elements_where_the_field_asks_for_far_larger_ones() -> None:
+    points = ticks()
+    points[60] += [0.045, 0.045]  # the element above its lower left corner is nearly a triangle
+    promise = grid_with(points, 0.1, np.empty(0, dtype=np.int64))
+    large = promise.tight.with_sizes(5.0 * promise.tight.sizes)
+    finer = module._with_room(promise, large, 1.5, 0.75)
+    assert finer.at(points[60:61])[0] == pytest.approx(0.08)
+    assert finer.at(np.array([[0.02, 0.98]]))[0] == pytest.approx(0.1)
+
+
+def test_where_most_elements_are_left_sizes_are_lowered_by_little_at_a_time() -> None:
+    points = ticks()
+    asked = SizeField(BackgroundMesh.unit_square_grid(41, 41), np.full(41 * 41, 0.1 / 1.5), "asked")
+    middle = np.array([[0.5, 0.5]])
+    for left, share in ((np.arange(100), module.FAR_SHARE), (np.array([44, 45, 54, 55]), module.SHARE / 1.5)):
+        finer = module._with_room(grid_with(points, 0.1, left), asked, 1.5, 0.5)
+        assert finer.at(middle)[0] == pytest.approx(0.1 * share, rel=1e-6)
