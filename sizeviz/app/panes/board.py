@@ -170,23 +170,10 @@ class PaneBoard(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show what the controller has now; of large meshes a pane in each turn of the event loop."""
-        self.turns.take({pane: partial(self.refresh_pane, pane) for pane in self.visible_panes})
+        """Show what the controller has now; of large meshes each pane composes in one turn, and shows in another."""
+        self.turns.take({pane: partial(self._compose, pane) for pane in self.visible_panes})
         if self.is_light:
             self.turns.finish()
-
-    def refresh_pane(self, pane: Pane) -> None:
-        """Show what the controller has now in one pane."""
-        if pane not in self.visible_panes:
-            return
-        shown = [(other, self._controller.displayed(other.view.method)) for other in self.visible_panes]
-        displayed = dict(shown)[pane]
-        chosen = None
-        if self.selection is not None and self.selection.method == pane.view.method and not displayed.stale:
-            chosen = self.selection.elements
-        pane.show_subject(
-            displayed.subject, displayed.stale, dark=self.dark, scale=self._shared_scale(pane, shown), selected=chosen
-        )
 
     def fit(self) -> None:
         """Show everything in every pane."""
@@ -235,6 +222,19 @@ class PaneBoard(QWidget):
         pane.set_edge_rule(lambda: self._edges_show(pane))
         self.panes.append(pane)
         self.pane_made.emit(pane)
+
+    def _compose(self, pane: Pane) -> None:
+        """Compose what the controller has now for one pane, to be shown in a turn of its own."""
+        if pane not in self.visible_panes:
+            return
+        shown = [(other, self._controller.displayed(other.view.method)) for other in self.visible_panes]
+        displayed = dict(shown)[pane]
+        chosen = None
+        if self.selection is not None and self.selection.method == pane.view.method and not displayed.stale:
+            chosen = self.selection.elements
+        subject = displayed.subject
+        spec = pane.composed(subject, dark=self.dark, scale=self._shared_scale(pane, shown), selected=chosen)
+        self.turns.take({(pane, "show"): partial(pane.show_scene, subject, spec, displayed.stale)})
 
     def _on_view(self, pane: Pane) -> None:
         self.views_changed.emit()

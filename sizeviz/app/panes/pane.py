@@ -91,10 +91,22 @@ class Pane(QFrame):
         selected: NDArray[np.intp] | None = None,
     ) -> None:
         """Compose and show what the pane's view asks of a subject."""
-        self.subject = subject
-        view = self.view.with_changes(dark=dark, edges=False)
-        spec = compose(subject, view, scale=scale, selected=selected)
-        self.spec = spec
+        self.show_scene(subject, self.composed(subject, dark=dark, scale=scale, selected=selected), stale)
+
+    def composed(
+        self,
+        subject: Subject,
+        *,
+        dark: bool,
+        scale: ColorScale | None = None,
+        selected: NDArray[np.intp] | None = None,
+    ) -> SceneSpec:
+        """Return what the pane's view asks of a subject; of a large one that is work enough for one turn."""
+        return compose(subject, self.view.with_changes(dark=dark, edges=False), scale=scale, selected=selected)
+
+    def show_scene(self, subject: Subject, spec: SceneSpec, stale: bool) -> None:
+        """Show a scene composed of a subject, and say what it says."""
+        self.subject, self.spec = subject, spec
         self.surface.canvas.show_scene(spec)
         self.surface.set_bounds(spec.bounds)
         self.update_edges()
