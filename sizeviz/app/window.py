@@ -243,7 +243,8 @@ class MainWindow(QMainWindow):
         """Bring panels and panes to a study."""
         if self.pages.currentWidget() is self.welcome:
             docks = {dock: dock.show for dock in (self.pipeline_dock, self.inspector_dock)}
-            self.turns.take({**docks, self.board: self._leave_welcome})
+            surfaces = {surface: surface.show for surface in self.board.curtained()}
+            self.turns.take({**docks, self.board: self._leave_welcome, **surfaces})
         self.show_title()
         self.source.show_source(study.source)
         self.show_options()

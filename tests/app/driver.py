@@ -125,6 +125,10 @@ class Person:
         """Return what one pane's picture shows."""
         self.rest(150)
         self.wait(lambda: not self.window.is_settling)
+        return self.picture_of(pane)
+
+    def picture_of(self, pane: Pane) -> np.ndarray:
+        """Return what one pane's picture shows at this moment, waiting for nothing."""
         picture = pane.surface.canvas.widget()
         corner = picture.mapTo(self.window, QPoint(0, 0))
         ratio = self.window.devicePixelRatioF()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from app.driver import Person, blue_share, orange_share
 from app.fakes import FakeEngine, fake_source
-from qtpy.QtWidgets import QWidget
+from qtpy.QtWidgets import QApplication, QWidget
 
 from sizeviz.app.panes.canvas import GLCanvas
 from sizeviz.app.settings import Settings
@@ -182,3 +182,46 @@ def test_a_pane_made_ready_draws_at_once_what_it_is_shown_first(qtbot, tmp_path)
     person.wait_settled(20)
     assert orange_share(person.look_at(window.board.panes[0])) > 0.05
     window.close()
+
+
+def test_the_old_frame_stays_until_the_new_one_is_whole(window, monkeypatch) -> None:
+    person, pane = Person(window), window.board.panes[0]
+    view = pane.surface.canvas.view
+    monkeypatch.setattr("sizeviz.scene.renderer.SLICE", 60)
+    monkeypatch.setattr("sizeviz.app.panes.view.PIECE_SECONDS", 0.0)
+    window.controller.set_source(fake_source("again"), "Open again")  # another mesh, in slices now
+    person.wait_settled(10)
+    old, frames = person.look_at(pane).astype(int), view.frames
+    window.actions_["color-quality"].trigger()
+    seen_half_drawn, pictures = 0, []
+    for _ in range(400):
+        QApplication.processEvents()
+        half_drawn = 0 < view._next_piece < len(view._pieces) and view._turn.is_busy
+        if half_drawn and seen_half_drawn < 6:
+            seen_half_drawn += 1
+            pictures.append(person.picture_of(pane).astype(int))
+        if view.frames > frames and not window.is_settling:
+            break
+    assert view.frames > frames and seen_half_drawn >= 3
+    assert all(np.abs(picture - old).max() <= 2 for picture in pictures)
+    assert np.abs(person.look_at(pane).astype(int) - old).mean() > 5.0
+
+
+def test_no_pane_stays_blank_after_the_first_run_or_any_other(qtbot, tmp_path) -> None:
+    """Opened before, during and after the preparation, small and large, again and again: every pane has its picture."""
+    for n, wait in ((24, 0), (24, 60), (90, 0), (90, 150)):
+        window = MainWindow(FakeEngine(n=n), Settings(str(tmp_path / f"{n}-{wait}.ini")))
+        qtbot.addWidget(window)
+        window.resize(1300, 800)
+        window.show()
+        person = Person(window)
+        window.preparation.start()
+        person.rest(wait)
+        for name in ("ring", "again"):
+            window.controller.open_source(name)
+            person.rest(50)
+            person.wait_settled(30)
+            for pane in window.board.visible_panes:
+                picture = person.look_at(pane)
+                assert pane.surface.isVisible() and orange_share(picture) + blue_share(picture) > 0.2, (n, wait, name)
+        window.close()

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from sizeviz.app.controller import Controller
     from sizeviz.app.news import Displayed
     from sizeviz.app.panes.canvas import Canvas
+    from sizeviz.app.panes.surface import Surface
     from sizeviz.scene.camera import Camera2D
     from sizeviz.scene.scale import ColorScale
 
@@ -134,6 +135,13 @@ class PaneBoard(QWidget):
         self.set_active(self.active)
         self.views_changed.emit()
         self.refresh()
+
+    def curtained(self) -> list[Surface]:
+        """Hide the pictures while the page is turned, and return them: they are laid out one a turn."""
+        surfaces = [pane.surface for pane in self.visible_panes]
+        for surface in surfaces:
+            surface.hide()
+        return surfaces
 
     def set_active(self, pane: Pane) -> None:
         """Make a pane the one that keys and lists act on."""

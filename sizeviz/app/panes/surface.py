@@ -240,6 +240,9 @@ class Surface(QWidget):
         self._bounds: Bounds = (0.0, 0.0, 1.0, 1.0)
         self._fitted = True
         self.setMinimumSize(160, 140)
+        policy = self.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)
+        self.setSizePolicy(policy)
 
     def set_bounds(self, bounds: Bounds) -> None:
         """Say what 'fit' shows; a change of it fits at once."""
