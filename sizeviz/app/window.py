@@ -242,9 +242,9 @@ class MainWindow(QMainWindow):
     def show_study(self, study: Study) -> None:
         """Bring panels and panes to a study."""
         if self.pages.currentWidget() is self.welcome:
-            docks = {dock: dock.show for dock in (self.pipeline_dock, self.inspector_dock)}
-            surfaces = {surface: surface.show for surface in self.board.curtained()}
-            self.turns.take({**docks, self.board: self._leave_welcome, **surfaces})
+            turned: dict[Hashable, Callable[[], object]] = {self.pipeline_dock: self.pipeline_dock.show}
+            turned |= {self.inspector_dock: self.inspector_dock.show, self.board: self._leave_welcome}
+            self.turns.take(turned | {surface: surface.show for surface in self.board.curtained()})
         self.show_title()
         self.source.show_source(study.source)
         self.show_options()
