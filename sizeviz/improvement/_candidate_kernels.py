@@ -6,6 +6,7 @@ import numpy as np
 
 from sizeviz.improvement._cavity_kernels import copy_row, fan
 from sizeviz.improvement._jit import compiled
+from sizeviz.improvement._mesh_kernels import linked
 from sizeviz.improvement._operation_kernels import (
     CLOCKWISE,
     COLLAPSE,
@@ -62,9 +63,9 @@ def collapse_change(a, c, b, d, count, topo):
 @compiled
 def swap_change(code, turn, patch, topo):
     """Return the change of energy when an edge is turned, or a large number where it cannot be."""
-    ideal, _, boundary, lined = topo
+    ideal, _, boundary, links = topo
     other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
-    if other < 0 or (lined[v] and lined[w]):
+    if other < 0 or linked(v, w, links):
         return IMPOSSIBLE
     s, t = (y1, x1) if turn == CLOCKWISE else (y2, x2)
     count = patch[3]
@@ -141,8 +142,8 @@ def is_flat(v, a, b, xy):
 def candidates(v, patch, topo, work, limit, found):
     """List the operations near node v that change the energy by at most ``limit``, best first; return their number.
 
-    ``topo`` is (ideal, guard, boundary, lined): elements wanted at each node, whether it may not be removed or split,
-    whether it lies on the boundary, whether it may lie on an inner line. Rows of ``found`` are (kind, code, argument,
+    ``topo`` is (ideal, guard, boundary, links): elements wanted at each node, whether it may not be removed or split,
+    whether it lies on the boundary, its neighbours along inner lines. Rows of ``found`` are (kind, code, argument,
     change).
     """
     ideal, guard, boundary, _ = topo

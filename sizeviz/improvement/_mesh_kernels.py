@@ -161,34 +161,43 @@ def corner_angle(code, xy, quads):
 
 
 @compiled
-def sector_counts(v, patch, lined):
+def linked(v, w, links):
+    """Say whether the edge between two nodes lies on an inner line; row v of ``links`` names its neighbours there."""
+    for j in range(links.shape[1]):
+        if links[v, j] == w:
+            return True
+    return False
+
+
+@compiled
+def sector_counts(v, patch, links):
     """Return the elements wanted at a node in all its sectors, which the boundary and inner lines bound."""
     xy, quads, ring, count = patch
     wanted = 0
     for j in range(count[v]):
         start = ring[v, j]
         w = quads[start >> 2, ((start & 3) + 1) & 3]
-        if not lined[w] and find_next(w, v, quads, ring, count) >= 0:
+        if not linked(v, w, links) and find_next(w, v, quads, ring, count) >= 0:
             continue
         angle, code = 0.0, start
         for _ in range(count[v]):
             angle += corner_angle(code, xy, quads)
             last = quads[code >> 2, ((code & 3) + 3) & 3]
             code = find_next(v, last, quads, ring, count)
-            if code < 0 or lined[last]:
+            if code < 0 or linked(v, last, links):
                 break
         wanted += max(1, round(angle / (0.5 * math.pi)))
     return wanted
 
 
 @compiled
-def ideal_counts(patch, boundary, lined, ideal):
+def ideal_counts(patch, boundary, links, ideal):
     """Write the number of elements wanted at each node: 4 inside, one for each right angle between fixed edges."""
     xy, quads, ring, count = patch
     for v in range(len(count)):
         ideal[v] = 4
-        if lined[v]:
-            wanted = sector_counts(v, patch, lined)
+        if links[v, 0] >= 0:
+            wanted = sector_counts(v, patch, links)
             ideal[v] = wanted if wanted > 0 else 4
         elif boundary[v]:
             angle = 0.0

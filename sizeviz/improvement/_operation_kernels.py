@@ -21,7 +21,7 @@ import numpy as np
 
 from sizeviz.improvement._cavity_kernels import fan
 from sizeviz.improvement._jit import compiled
-from sizeviz.improvement._mesh_kernels import find_next
+from sizeviz.improvement._mesh_kernels import find_next, linked
 
 DOUBLET, COLLAPSE, SWAP, ROTATE, OPEN, PILLOW = (np.int64(kind) for kind in range(6))
 CLOCKWISE, COUNTER = np.int64(0), np.int64(1)
@@ -164,11 +164,11 @@ def spread(v, w, s, t, xy, guard, spots):
 
 
 @compiled
-def build_swap(code, turn, patch, guard, lined, old, new, spots):
-    """Turn the edge between two elements within their hexagon, unless it may belong to an inner line."""
+def build_swap(code, turn, patch, guard, links, old, new, spots):
+    """Turn the edge between two elements within their hexagon, unless it lies on an inner line."""
     xy, quads, ring, count = patch
     other, v, y1, y2, w, x1, x2 = hexagon(code, patch)
-    if other < 0 or (lined[v] and lined[w]):
+    if other < 0 or linked(v, w, links):
         return 0, 0, 0
     s, t = (y1, x1) if turn == CLOCKWISE else (y2, x2)
     if s == x1 or s == x2 or t == y1 or t == y2:

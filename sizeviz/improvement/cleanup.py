@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sizeviz.improvement import _cleanup_kernels, _mesh_kernels
+from sizeviz.improvement import _cleanup_kernels, _curve_kernels, _mesh_kernels
 from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES
 from sizeviz.improvement._cavity_kernels import MOST_CORE, MOST_ELEMENTS
 from sizeviz.improvement._operation_kernels import DEGENERATE
@@ -49,6 +49,8 @@ MOST_VISITS, FEW_VISITS = 12, 5
 """How often one node is taken from the queue in one pass, so that a pass ends; the second where losses are allowed."""
 LOSS = 0.45
 """Distortion that an operation may cost which changes no valence energy, but moves a pair of irregular nodes."""
+ON_LINE = 1e-9
+"""Distance from an inner line, over the mesh's width, up to which a fixed node lies on it."""
 BUDGET = 1024
 """Nodes visited between two looks at the monitor."""
 
@@ -102,16 +104,16 @@ class Cleaner:
         boundary = np.zeros(n, dtype=np.bool_)
         _mesh_kernels.mark_boundary(work.quads, work.ring, work.count, boundary)
         ideal = np.zeros(n, dtype=np.int32)
-        lined = _may_be_lined(work)
-        _mesh_kernels.ideal_counts(work.patch, boundary, lined, ideal)
+        links = _links(work)
+        _mesh_kernels.ideal_counts(work.patch, boundary, links, ideal)
         zone = np.zeros(n, dtype=np.int32)
         _mesh_kernels.own_nodes(tile_of, self.patch, zone)
         guard = (work.curve >= 0) | work.fixed | boundary
         more = n_tiles * spare
         work.lengthen(more, more)
         self.patch = work.patch
-        held = (longer(flags, more, False) for flags in (guard, boundary, lined))
-        self.topo = (longer(ideal, more, 4), *held)
+        links = np.vstack([links, np.full((more, links.shape[1]), -1, dtype=np.int32)])
+        self.topo = (longer(ideal, more, 4), longer(guard, more, False), longer(boundary, more, False), links)
         self.zone = np.concatenate([zone, np.repeat(np.arange(n_tiles, dtype=np.int32), spare)])
         self.seen = np.zeros(n + more, dtype=np.int64), np.zeros(len(work.quads), dtype=np.int64)
         self.awake, self.failed = np.zeros(n + more, dtype=np.bool_), np.zeros(len(work.quads), dtype=np.int16)
@@ -185,11 +187,32 @@ class Cleaner:
         return done
 
 
-def _may_be_lined(work: Workspace) -> NDArray[np.bool_]:
-    """Return the nodes that lie on inner lines, and all fixed ones if there are lines, whose ends are among them."""
-    inner = np.array([curve.inner for curve in work.domain.curves])
-    on_line = (work.curve >= 0) & inner[work.curve]
-    return on_line | work.fixed if inner.any() else on_line
+def _links(work: Workspace) -> NDArray[np.int32]:
+    """Return the neighbours of each node along inner lines, a row a node, -1 where there are fewer.
+
+    Clean-up neither moves a node off its line nor takes one away, so these edges stay what they are.
+    """
+    pairs = [np.empty((0, 2), dtype=np.int64)]
+    width = float(np.ptp(work.xy[work.count > 0], axis=0).max())
+    for c, curve in enumerate(work.domain.curves):
+        if not curve.inner:
+            continue
+        nodes = np.flatnonzero((work.curve == c) | work.fixed)  # lines may begin, end and meet at fixed nodes
+        station, off = np.zeros(len(work.xy)), np.zeros(len(work.xy))
+        of = np.full(len(work.xy), c, dtype=np.int32)
+        _curve_kernels.project_nodes(work.curves, nodes, of, work.xy, station, off)
+        on = nodes[off[nodes] <= (ON_LINE * width) ** 2]
+        on = on[np.argsort(station[on], kind="stable")]
+        pairs.append(np.column_stack([on[:-1], on[1:]]))
+        if curve.closed or np.array_equal(curve.points[0], curve.points[-1]):
+            pairs.append(np.column_stack([on[-1:], on[:1]]))
+    one, other = np.vstack([*pairs, *(pair[:, ::-1] for pair in pairs)]).T
+    order = np.argsort(one, kind="stable")
+    one, other = one[order], other[order]
+    place = np.arange(len(one)) - np.searchsorted(one, one)
+    links = np.full((len(work.xy), int(place.max(initial=0)) + 1), -1, dtype=np.int32)
+    links[one, place] = other
+    return links
 
 
 def cleaned(

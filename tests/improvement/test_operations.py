@@ -145,10 +145,13 @@ def strip() -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     return points, np.array([[0, 1, 4, 3], [1, 2, 5, 4]], dtype=np.int32)
 
 
-@pytest.mark.parametrize("line", [False, True], ids=["no line", "line"])
-def test_an_edge_between_two_fixed_nodes_turns_unless_a_line_may_lie_there(line: bool) -> None:
+@pytest.mark.parametrize("line", ["none", "beside", "there"])
+def test_an_edge_between_two_fixed_nodes_turns_unless_a_line_lies_there(line: str) -> None:
     points, quads = strip()
-    lines = (np.array([[1.0, 0.0], [1.0, 1.0]]),) if line else ()
+    across = np.array([[1.0, 0.0], [1.0, 1.0]])
+    # two lines that pass by its ends say nothing about the edge between them
+    beside = (np.array([[1.0, 0.0], [2.0, 1.0]]), np.array([[1.0, 1.0], [0.0, 0.0]]))
+    lines = {"none": (), "there": (across,), "beside": beside}[line]
     domain = Domain.rectangle(0.0, 0.0, 2.0, 1.0)
     domain = Domain(domain.outer, lines=lines)
     mesh = QuadMesh(points, quads, np.zeros(6, dtype=np.int32), np.ones(6, dtype=bool))
@@ -158,7 +161,7 @@ def test_an_edge_between_two_fixed_nodes_turns_unless_a_line_may_lie_there(line:
     a, b = (int(np.argmin(np.hypot(*(work.xy - p).T))) for p in ([1.0, 0.0], [1.0, 1.0]))
     code = find_next(a, b, work.quads, work.ring, work.count)
     change = swap_change(np.int64(code), np.int64(0), cleaner.patch, cleaner.topo)
-    assert (change == IMPOSSIBLE) == line
+    assert (change == IMPOSSIBLE) == (line == "there")
 
 
 @pytest.mark.parametrize(("slope", "wanted"), [(0.2, 3), (1.5, 2), (5.0, 2)])
@@ -169,5 +172,5 @@ def test_elements_are_wanted_on_each_side_of_a_line(slope: float, wanted: int) -
     quads = np.array([[0, 1, 4, 2], [0, 2, 5, 3]], dtype=np.int32)
     count, ring = np.zeros(6, dtype=np.int32), np.zeros((6, 6), dtype=np.int32)
     fill_rings(quads, ring, count)
-    lined = np.array([True, False, True, False, False, False])
-    assert sector_counts(0, (points, quads, ring, count), lined) == wanted
+    links = np.array([[2], [-1], [0], [-1], [-1], [-1]], dtype=np.int32)
+    assert sector_counts(0, (points, quads, ring, count), links) == wanted
