@@ -1,11 +1,12 @@
 from __future__ import annotations
 
+import os
 import threading
 import time
 
 import pytest
 
-from sizeviz.app.jobs import Job, JobRunner
+from sizeviz.app.jobs import WORKER_NICENESS, Job, JobRunner
 
 
 class Ledger:
@@ -50,6 +51,17 @@ def test_a_job_runs_off_the_windows_thread_and_its_result_comes_back_to_it(qtbot
     with qtbot.waitSignal(runner.idle, timeout=3000):
         runner.submit(job)
     assert seen["then"] == threading.get_ident() != seen["worker"]
+
+
+def test_the_worker_stands_back_behind_the_window_wherever_that_stands(qtbot, runner) -> None:
+    found = []
+
+    def work(monitor):
+        return os.getpriority(os.PRIO_PROCESS, threading.get_native_id())
+
+    with qtbot.waitSignal(runner.idle, timeout=3000):
+        runner.submit(Job("a", work, found.append))
+    assert found == [min(os.getpriority(os.PRIO_PROCESS, os.getpid()) + WORKER_NICENESS, 19)]
 
 
 @pytest.mark.parametrize("error", [ValueError("no\nmore"), RuntimeError(""), KeyboardInterrupt(), MemoryError()])
