@@ -244,7 +244,8 @@ class MainWindow(QMainWindow):
         if self.pages.currentWidget() is self.welcome:
             turned: dict[Hashable, Callable[[], object]] = {self.pipeline_dock: self.pipeline_dock.show}
             turned |= {self.inspector_dock: self.inspector_dock.show, self.board: self._leave_welcome}
-            self.turns.take(turned | {surface: surface.show for surface in self.board.curtained()})
+            turned |= {surface: surface.show for surface in self.board.curtained()}
+            self.turns.take(turned | {"focus": lambda: self.board.active.surface.glass.setFocus()})
         self.show_title()
         self.source.show_source(study.source)
         self.show_options()
@@ -277,12 +278,14 @@ class MainWindow(QMainWindow):
         method, view = pane.view.method, pane.view
         methods, study = self.board.methods, self.controller.study
         subject = self.controller.displayed(method).subject
+        older = {name: self.controller.displayed(name).subject.report for name in self.controller.missing()}
+        stale = {name: report for name, report in older.items() if report is not None}
         pieces: dict[Hashable, Callable[[], object]] = {
             panel: partial(panel.show_subject, subject, method, view) for panel in self.histograms
         }
         self.turns.take(
             {
-                self.statistics: partial(self.statistics.show_study, study, methods, view.measure),
+                self.statistics: partial(self.statistics.show_study, study, methods, view.measure, stale),
                 self.worst: partial(self.worst.show_subject, subject, method, view.measure),
                 **pieces,
             }

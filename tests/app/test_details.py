@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -45,6 +46,25 @@ def test_a_message_is_as_high_as_its_words(opened) -> None:
         text = opened.toast.text
         assert text.height() >= text.heightForWidth(text.width())
         assert opened.toast.height() <= max(text.heightForWidth(text.width()), opened.toast.copy_button.height()) + 28
+
+
+def test_after_the_first_page_the_keys_go_to_the_picture(opened) -> None:
+    Person(opened).wait_settled()
+    assert QApplication.focusWidget() is opened.board.active.surface.glass
+
+
+def test_the_table_keeps_the_last_numbers_and_calls_them_stale(qtbot, opened) -> None:
+    opened.judge_panel.automatic.setChecked(False)
+    before = opened.statistics.model.table
+    opened.controller.change(lambda o: replace(o, preserve=replace(o.preserve, alpha=3.0)), "α = 3")
+    Person(opened).wait(lambda: not opened.is_settling)
+    after = opened.statistics.model.table
+    assert after.header == ("", "Gradient limiting", "Size preserving (stale)")
+    assert after.rows[:-1] == before.rows[:-1]  # all but the seconds, which are of a run that is gone
+    assert opened.statistics.model.headerData(2, Qt.Orientation.Horizontal) == "Size\npreserving (stale)"
+    with qtbot.waitSignal(opened.controller.settled, timeout=5000):
+        opened.controller.apply()
+    assert "stale" not in "".join(opened.statistics.model.table.header)
 
 
 def test_menus_of_a_pane_are_seen_whole_or_above_each_other(opened) -> None:

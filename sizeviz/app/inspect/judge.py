@@ -23,9 +23,11 @@ from sizeviz.app.panels.controls import choice, hint
 from sizeviz.scene.subject import METHOD_TITLES
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
-    from sizeviz.conformity import Measure
+    from sizeviz.conformity import Measure, MeshReport
     from sizeviz.scene.subject import Subject
     from sizeviz.study import Study
 
@@ -66,7 +68,7 @@ class GridModel(QAbstractTableModel):
         """Return a column's head."""
         if orientation == Qt.Orientation.Horizontal and section < len(self.table.header):
             if role == Qt.ItemDataRole.DisplayRole:
-                return self.table.header[section].replace(" ", "\n")
+                return self.table.header[section].replace(" ", "\n", 1)
             if role == Qt.ItemDataRole.TextAlignmentRole and section > 0:
                 return Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         return None
@@ -97,9 +99,15 @@ class StatisticsPanel(QWidget):
             row.addWidget(button, 1)
         column.addLayout(row)
 
-    def show_study(self, study: Study | None, methods: tuple[str, ...], measure: Measure) -> None:
-        """Show the numbers of a study's methods."""
-        self.model.set_table(statistics(study, methods, measure))
+    def show_study(
+        self,
+        study: Study | None,
+        methods: tuple[str, ...],
+        measure: Measure,
+        stale: Mapping[str, MeshReport] | None = None,
+    ) -> None:
+        """Show the numbers of a study's methods, older ones where there are no newer."""
+        self.model.set_table(statistics(study, methods, measure, stale))
         header = self.view.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)

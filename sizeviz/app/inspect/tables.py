@@ -11,7 +11,7 @@ from sizeviz.scene.subject import MEASURE_TITLES, METHOD_TITLES
 from sizeviz.scene.verdict import percent
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from sizeviz.conformity import Measure, MeshReport
     from sizeviz.study import Study
@@ -33,10 +33,22 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
 
 
-def statistics(study: Study | None, methods: Sequence[str], measure: Measure) -> Table:
-    """Return counts, conformity and quality of some methods, a column each; empty cells where nothing was run."""
-    header = ("", *(METHOD_TITLES.get(name, name) for name in methods))
-    columns = [_column(study, name, measure) for name in methods]
+def statistics(
+    study: Study | None, methods: Sequence[str], measure: Measure, stale: Mapping[str, MeshReport] | None = None
+) -> Table:
+    """Return counts, conformity and quality of some methods, a column each; empty cells where nothing was run.
+
+    Where the study has no run but ``stale`` an older report, its numbers stay, and the column's head says so.
+    """
+    older = dict(stale or {})
+    titles = {name: METHOD_TITLES.get(name, name) + (" (stale)" if name in older else "") for name in methods}
+    header = ("", *titles.values())
+    columns = [
+        dict(zip(_row_names(measure), report_cells(older[name], measure), strict=False))
+        if name in older
+        else _column(study, name, measure)
+        for name in methods
+    ]
     names = _row_names(measure)
     rows = tuple((name, *(column.get(name, "") for column in columns)) for name in names)
     return Table(header, rows)
