@@ -41,7 +41,7 @@ GAIN = 1e-3
 LOWEST_QUALITY = 0.55
 LARGEST_STRETCH = 2.2
 """Longest edge over target size that an operation may leave, unless it was larger before."""
-RESCUES = ((0.6, 2.2), (0.4, 3.0), (0.3, 3.0), (0.2, 4.0), (0.05, 8.0), (1e-3, 1e3))
+RESCUES = ((0.6, 2.2), (0.4, 3.0), (0.3, 3.0), (0.2, 4.0), (0.05, 8.0), (1e-3, 1e3), (1e-6, 1e3))
 """Quality demanded of a rescue and the longest edge over target size it may leave, ever more modest."""
 TRIES = 12
 """Operations that a visit of the wide clean-up may try."""

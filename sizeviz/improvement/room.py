@@ -36,7 +36,7 @@ def with_room(mesh: QuadMesh, size: SizeField) -> SizeField:
     SizeField
         The sizes, lower and graded where boundary edges are far shorter; the field itself where none is.
     """
-    edges = _boundary_edges(mesh)
+    edges = np.vstack([_boundary_edges(mesh), _fixed_edges(mesh)])
     if not len(edges):
         return size
     length = np.hypot(*(mesh.points[edges[:, 1]] - mesh.points[edges[:, 0]]).T)
@@ -46,6 +46,13 @@ def with_room(mesh: QuadMesh, size: SizeField) -> SizeField:
     nodes = np.flatnonzero(longest > 0.0)
     short = longest[nodes] < SHORT * size.at(mesh.points[nodes])
     return capped(size, mesh.points[nodes[short]], longest[nodes[short]])
+
+
+def _fixed_edges(mesh: QuadMesh) -> NDArray[np.int32]:
+    """Return the edges ``(E, 2)`` of fixed nodes on no curve, some of them twice."""
+    inner = mesh.fixed & (mesh.curve < 0)
+    sides = np.vstack([mesh.quads[:, [k, (k + 1) % 4]] for k in range(4)])
+    return sides[inner[sides].any(axis=1)]
 
 
 def _boundary_edges(mesh: QuadMesh) -> NDArray[np.int32]:

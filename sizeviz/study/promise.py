@@ -35,6 +35,8 @@ LARGEST = 1.5
 """R above which an element's edge no longer tells how far to reach."""
 POOR, POOR_SHARE, POOR_REACH = 0.6, 0.8, 1.5
 """Shape quality from which down sizes are lowered although R <= 1; by how much, and how far around."""
+SHARP = np.deg2rad(38.0)
+"""Angle between two lines below which the element between them is poor whatever its mesh; it has at most its sine."""
 BETTER, DEARER, FEW = 3, 1.15, 100
 """How often this is tried, and what it may cost in elements: times their number, or so many."""
 FAR, FAR_SHARE = 0.5, 0.8
@@ -148,10 +150,15 @@ def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: 
 
 
 def _poor(promise: Promise) -> NDArray[np.int64]:
-    """Return the elements of poor shape, but those in sharp corners, which the domain makes so."""
+    """Return the elements of poor shape, but those in sharp corners, which the domain or its lines make so."""
     mesh = promise.mesh
     around = np.bincount(mesh.quads.ravel(), minlength=mesh.n_points)
-    cornered = ((around == 1) & mesh.fixed)[mesh.quads].any(axis=1)
+    corner, on = mesh.points[mesh.quads], (mesh.curve >= 0)[mesh.quads]
+    ahead, behind = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
+    across = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
+    sharp = np.arctan2(across, (ahead * behind).sum(axis=2)) < SHARP
+    sharp &= mesh.fixed[mesh.quads] & np.roll(on, -1, axis=1) & np.roll(on, 1, axis=1)
+    cornered = (sharp | ((around == 1) & mesh.fixed)[mesh.quads]).any(axis=1)
     return np.flatnonzero((shape_quality(mesh) < POOR) & ~cornered)
 
 

@@ -89,3 +89,17 @@ def test_inner_lines_have_no_element_with_a_flat_corner() -> None:
     mesh = improved(generated(domain, size, MeshOptions(scale=1.0)), domain, size)
     assert shape_quality(mesh).min() > 0.25
     assert mesh.areas.sum() == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("away", [1e-2, 1e-4, 1e-7])
+@pytest.mark.parametrize("beside", ["side", "point"])
+def test_sizes_grow_from_a_point_that_nearly_touches_a_side_or_another_point(away: float, beside: str) -> None:
+    points = np.array([[0.5, away]]) if beside == "side" else np.array([[0.4, 0.5], [0.4, 0.5 + away]])
+    domain = Domain([[0, 0], [1, 0], [1, 1], [0, 1]], fixed_points=points)
+    size = constant(0.05)
+    mesh = improved(generated(domain, size, MeshOptions(scale=1.0)), domain, size)
+    for point in points:
+        assert (mesh.points == point).all(axis=1).any()
+    assert shape_quality(mesh).min() > 0.6
+    assert mesh.n_quads < 1000
+    assert mesh.areas.sum() == pytest.approx(1.0, rel=1e-12)

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from sizeviz.meshing.frontal import _boundary_kernels as kernels
 from sizeviz.meshing.frontal.boundary import least_count
-from sizeviz.meshing.frontal.network import Network, Piece, network, position_on, unrolled
+from sizeviz.meshing.frontal.network import TOUCHING, Network, Piece, network, position_on, unrolled
 from sizeviz.sizing.capped import capped
 
 if TYPE_CHECKING:
@@ -87,9 +88,9 @@ def fitted(domain: Domain, size: SizeField, scale: float) -> tuple[Network, Size
             more, least = _short(domain.curves[piece.curve], piece, size, scale)
             points.append(more)
             bounds.append(least)
-    more, least = _gaps(net, domain.curves, size, scale, tips)
-    points.append(more)
-    bounds.append(least)
+    for more, least in (_gaps(net, domain.curves, size, scale, tips), _near_points(domain, size, scale)):
+        points.append(more)
+        bounds.append(least)
     return net, capped(size, np.vstack(points), np.concatenate(bounds) / scale)
 
 
@@ -231,6 +232,33 @@ def _gaps(
             at = np.unique(np.concatenate([at[narrow] - 0.5 * step, at[narrow] + 0.5 * step]))
             at = at[(at > piece.begin) & (at < piece.end)]
     return np.vstack(places), np.concatenate(widths)
+
+
+def _near_points(domain: Domain, size: SizeField, scale: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return fixed points that lie closer to a curve or to one another than the sizes ask, and how close.
+
+    The place on the curve that is nearest counts too. A point, unlike a gap, may be as narrow as it likes: the
+    elements that sizes need to grow from there are few.
+    """
+    at = np.unique(domain.fixed_points, axis=0)
+    if not len(at):
+        return np.empty((0, 2)), np.empty(0)
+    x0, y0, x1, y1 = domain.bounds
+    paths = [np.vstack([c.points, c.points[:1]]) if c.closed else c.points for c in domain.curves]
+    lines = shapely.linestrings(np.vstack(paths), indices=np.repeat(np.arange(len(paths)), [len(p) for p in paths]))
+    near, away = shapely.STRtree(lines).query_nearest(shapely.points(at), return_distance=True, all_matches=False)
+    path, away = lines[near[1]], away.astype(np.float64)
+    foot = shapely.get_coordinates(
+        shapely.line_interpolate_point(path, shapely.line_locate_point(path, shapely.points(at)))
+    )
+    off = away > TOUCHING * max(x1 - x0, y1 - y0)
+    at, foot, away = at[off], foot[off], away[off]
+    if len(at) > 1:
+        away = np.minimum(away, cKDTree(at).query(at, k=2)[0][:, 1])
+    narrow = away < WIDE * scale * size.at(at)
+    at, foot, away = at[narrow], foot[narrow], away[narrow]
+    # to a place on a curve further away than another point, sizes grow from both
+    return np.vstack([at, foot]), np.concatenate([away, np.maximum(away, np.hypot(*(foot - at).T))])
 
 
 def _normals(
