@@ -82,6 +82,7 @@ def make_comparison() -> None:
 def make_scenes(scenes: dict[str, Callable[[Person, Path], None]]) -> None:
     """Open one window and let each scene be played in it."""
     from app.driver import Person
+    from qtpy.QtGui import QCursor
 
     from sizeviz.app.engine import PipelineEngine
     from sizeviz.app.launch import application
@@ -94,6 +95,7 @@ def make_scenes(scenes: dict[str, Callable[[Person, Path], None]]) -> None:
         window.resize(*SIZE)
         window.show()
         window.activateWindow()
+        QCursor.setPos(0, 0)  # under which nothing lights up
         person = Person(window)
         person.rest(500)
         for name, play in scenes.items():
@@ -111,6 +113,7 @@ def welcome(person: Person, path: Path) -> None:
 def running(person: Person, path: Path) -> None:
     """Show a run under way."""
     person.window.controller.open_source("mri")
+    person.wait(lambda: person.window.controller.study, 600)  # before that, kernels may be compiled
     person.wait(lambda: person.window.progress.bar.value() > 550, 600)
     person.photograph(path)
     person.wait_settled(900)
