@@ -11,11 +11,15 @@ if TYPE_CHECKING:
     from sizeviz.study import Study
 
 
+FEW = 10_000.0
+"""Runs of fewer elements than this take no less time than one of so many."""
+
+
 class Pace:
     """What the last run of each method took, and on which field.
 
     A field that was painted over may ask for a hundred times as many elements as the one before: what a run took says
-    nothing until it is told in seconds an element.
+    nothing until it is told in seconds an element; small runs all take about the same time.
     """
 
     def __init__(self) -> None:
@@ -36,7 +40,7 @@ class Pace:
         total, known = 0.0, {id(field): 1.0}
         for seconds, before in self._last.values():
             if id(before) not in known:
-                known[id(before)] = squares(field) / squares(before)
+                known[id(before)] = squares(field) / max(squares(before), FEW)
             total += seconds * max(1.0, known[id(before)])
         return total
 

@@ -79,6 +79,17 @@ def test_a_stroke_that_asks_for_many_more_elements_waits_for_apply(qtbot, contro
     assert any(call.startswith("run") for call in engine.calls)
 
 
+def test_the_first_stroke_on_a_blank_canvas_is_meshed_at_once(qtbot, controller, engine, monkeypatch) -> None:
+    engine.seconds = 0.05
+    monkeypatch.setattr("sizeviz.app.controller.AUTO_SECONDS", 0.5)
+    with qtbot.waitSignal(controller.settled, timeout=5000):
+        controller.open_canvas(65, 0.06)
+    with qtbot.waitSignal(controller.settled, timeout=5000):
+        stroke(
+            controller, [(0.2, 0.7), (0.8, 0.8)], Brush(radius=0.035, value=0.004)
+        )  # 20 times as many, and still few
+
+
 def test_undo_brings_back_results_without_running_again(qtbot, controller, engine) -> None:
     open_ring(qtbot, controller)
     first = controller.study
