@@ -44,7 +44,7 @@ def main() -> int:
         def take(name: str) -> None:
             path = HERE / f"{name}.png"
             if name.endswith("-menu"):
-                session.screen().save(str(path))
+                session.screen().copy(0, 0, *SIZE).save(str(path))  # the screen may be larger than the window
             else:
                 student.photograph(path)
             print(path.name)

@@ -85,9 +85,7 @@ def test_the_first_stroke_on_a_blank_canvas_is_meshed_at_once(qtbot, controller,
     with qtbot.waitSignal(controller.settled, timeout=5000):
         controller.open_canvas(65, 0.06)
     with qtbot.waitSignal(controller.settled, timeout=5000):
-        stroke(
-            controller, [(0.2, 0.7), (0.8, 0.8)], Brush(radius=0.035, value=0.004)
-        )  # 20 times as many, and still few
+        stroke(controller, [(0.2, 0.7), (0.8, 0.8)], Brush(radius=0.035, value=0.004))  # 20 times as many: still few
 
 
 def test_undo_brings_back_results_without_running_again(qtbot, controller, engine) -> None:

@@ -85,6 +85,7 @@ def test_the_size_under_the_brush_is_the_size_just_painted(qtbot, opened) -> Non
     before = glass.ring.label
     qtbot.mousePress(glass, Qt.MouseButton.LeftButton, pos=spot)
     assert glass.ring.label == "h 0.0123" != before
+    assert "h 0.0123 " in opened.readout.text()
     qtbot.keyClick(opened, Qt.Key.Key_Escape)
     assert glass.ring.label == before
     qtbot.mouseRelease(glass, Qt.MouseButton.LeftButton, pos=spot)

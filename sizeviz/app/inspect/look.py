@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QObject, Signal
@@ -40,17 +41,21 @@ class Inspector(QObject):
         super().__init__(board)
         self._controller, self._board, self._readout, self._worst = controller, board, readout, worst
         self.pin: tuple[str, int] | None = None
+        self._under: tuple[Pane, float, float] | None = None
         board.hovered.connect(self._hover)
         board.left.connect(self._leave)
         board.clicked.connect(self._click)
         worst.chosen.connect(self.go_to)
         controller.study_changed.connect(lambda old, new: self._after_change())
+        controller.painting.changed.connect(self._read_again)
 
     def read(self, pane: Pane, x: float, y: float) -> Reading:
-        """Return all that is known at a point of a pane."""
+        """Return all that is known at a point of a pane: its mesh, and the fields as the brush has them now."""
         mesh = pane.subject.mesh
         locator = None if mesh is None else self._controller.locator(mesh)
-        return reading(pane.subject, locator, pane.view.measure, x, y)
+        now = self._controller.displayed(pane.view.method).subject  # ahead of the pane, which waits for its turn
+        subject = replace(pane.subject, prescribed=now.prescribed, target=now.target)
+        return reading(subject, locator, pane.view.measure, x, y)
 
     def go_to(self, method: str, element: int) -> None:
         """Look at an element, and pin it."""
@@ -75,6 +80,7 @@ class Inspector(QObject):
     # -- inside ----------------------------------------------------------------------------------------------------
 
     def _hover(self, pane: Pane, x: float, y: float) -> None:
+        self._under = pane, x, y
         seen = self.read(pane, x, y)
         self._readout.setText("   " + seen.words())
         glass, mesh = pane.surface.glass, pane.subject.mesh
@@ -84,7 +90,13 @@ class Inspector(QObject):
             glass.marks["hover"] = Mark(mesh.points[mesh.quads[seen.element]])
         glass.update()
 
+    def _read_again(self) -> None:
+        """Tell what the brush has changed under it."""
+        if self._under is not None:
+            self._readout.setText("   " + self.read(*self._under).words())
+
     def _leave(self) -> None:
+        self._under = None
         self._readout.setText("")
         for pane in self._board.panes:
             if pane.surface.glass.marks.pop("hover", None) is not None:
