@@ -162,6 +162,7 @@ def painting(person: Person, path: Path) -> None:
     person.rest(500)
     pane = window.board.panes[0]
     person.drag(pane, [(0.2, 0.7), (0.4, 0.85), (0.6, 0.7), (0.8, 0.8)], steps=12)
+    window.controller.apply()  # on a busy machine the stroke waits to be asked
     person.wait_settled(300)
     person.drag(pane, [(0.15, 0.25), (0.35, 0.45), (0.6, 0.3), (0.82, 0.42)], steps=14, lift=False)
     person.rest(900)
