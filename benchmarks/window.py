@@ -97,7 +97,8 @@ def stalls(folder: Path, quick: bool) -> None:
         took, cpu = time.perf_counter() - began, time.process_time() - cpu
         worst = sorted(beat.gaps)[-3:][::-1]
         tell(f"longest stall, {words} run ({took:.0f} s, {cpu:.0f} CPU s)", 1000 * worst[0], "ms", 50)
-        print(f"    three longest: {', '.join(f'{1000 * gap:.0f} ms' for gap in worst)}")
+        print(f"    three longest: {', '.join(f'{1000 * gap:.0f} ms' for gap in worst)}; ", end="")
+        print(f"the window's thread itself works at most {1000 * max(beat.works):.0f} CPU ms in one")
     beat.stop()
     window.close()
 

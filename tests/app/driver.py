@@ -35,7 +35,8 @@ class Heartbeat(QObject):
 
     def reset(self) -> None:
         self.gaps: list[float] = []
-        self._last = time.perf_counter()
+        self.works: list[float] = []  # processor seconds of this thread in each gap: what it did itself
+        self._last, self._worked = time.perf_counter(), time.thread_time()
 
     @property
     def longest(self) -> float:
@@ -45,9 +46,10 @@ class Heartbeat(QObject):
         self._timer.stop()
 
     def _tick(self) -> None:
-        now = time.perf_counter()
+        now, worked = time.perf_counter(), time.thread_time()
         self.gaps.append(now - self._last)
-        self._last = now
+        self.works.append(worked - self._worked)
+        self._last, self._worked = now, worked
 
 
 class Person:
