@@ -100,6 +100,15 @@ def test_a_brush_at_first_asks_for_thousands_of_elements_not_millions(qtbot) -> 
     assert 500 < dab < 3000
 
 
+def test_a_list_of_a_larger_mesh_moves_nothing(opened) -> None:
+    Person(opened).wait_settled()
+    pane = opened.board.active
+    camera = pane.surface.camera
+    opened.inspector.go_to(pane.view.method, pane.subject.mesh.n_quads)
+    assert pane.surface.camera == camera
+    assert opened.inspector.pin is None
+
+
 def test_a_saved_picture_is_what_the_pane_shows(opened, tmp_path) -> None:
     from PIL import Image
 

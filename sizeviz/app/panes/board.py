@@ -189,11 +189,15 @@ class PaneBoard(QWidget):
             pane.surface.fit()
 
     def go_to(self, method: str, element: int, across: float = 24.0) -> Pane | None:
-        """Centre the pane that shows a method on one of its elements, about 24 such elements across."""
+        """Centre the pane that shows a method on one of its elements, about 24 such elements across.
+
+        A list may name an element of a mesh that the pane, whose turn came earlier or is still to come, does not show:
+        then nothing moves.
+        """
         pane = next((p for p in [self.active, *self.visible_panes] if p.view.method == method), None)
-        if pane is None or pane.subject.mesh is None:
+        mesh = None if pane is None else pane.subject.mesh
+        if pane is None or mesh is None or not 0 <= element < mesh.n_quads:
             return None
-        mesh = pane.subject.mesh
         x, y = mesh.points[mesh.quads[element]].mean(axis=0)
         size = float(np.sqrt(abs(mesh.areas[element])))
         pane.surface.move_camera(pane.surface.camera.at(float(x), float(y), across * size))
