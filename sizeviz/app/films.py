@@ -209,8 +209,9 @@ def _carried_out(command: list[str], monitor: Monitor) -> str | None:
                     continue
                 if line is None:
                     break
-                state = parsed_line(line) or state
-                if parsed_line(line) is None and line.strip():
+                step = parsed_line(line)
+                state = step or state
+                if step is None and line.strip():
                     said = line.strip().removeprefix("sizeviz: ")
         except BaseException:
             _end(child)

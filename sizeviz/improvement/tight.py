@@ -119,7 +119,7 @@ def tightened(
     share = _shares(field, target, factor) if options.factor is None else np.full(len(target.sizes), options.factor)
     if field.background.grid is not None and _alike(field, target):
         radii = [radius, *(r for r in RADII if r < radius and options.radius is None)]
-        return _affordable(field, target, share, radii)
+        return _affordable(field, target, share, radii, (1.0 + DEAR) * float(asked.sum()))
     # h* itself bounds the minimum within alpha h* from below; a second scale stands for the floors of narrow valleys
     lower = target.with_sizes(share * target.sizes)
     second = PreserveOptions(alpha=SECOND_SCALE, beta=SECOND_SHARE * float(share.max()))
@@ -127,13 +127,14 @@ def tightened(
     return replace(both, label=f"{target.label}, tight")
 
 
-def _affordable(field: SizeField, target: SizeField, share: NDArray[np.float64], radii: list[float]) -> SizeField:
-    """Return the tight field of the largest radius that does not add too many elements."""
-    asked = _asked(target).sum()
+def _affordable(
+    field: SizeField, target: SizeField, share: NDArray[np.float64], radii: list[float], most: float
+) -> SizeField:
+    """Return the tight field of the largest radius that asks for no more than ``most`` elements, or the last one's."""
     for radius in radii:
         sizes = np.minimum(share * target.sizes, share * _grid_minima(field, radius * target.sizes))
         tight = target.with_sizes(sizes, f"{target.label}, tight")
-        if _asked(tight).sum() <= (1.0 + DEAR) * asked:
+        if _asked(tight).sum() <= most:
             break
     return tight
 

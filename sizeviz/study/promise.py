@@ -152,14 +152,16 @@ def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: 
 def _poor(promise: Promise) -> NDArray[np.int64]:
     """Return the elements of poor shape, but those in sharp corners, which the domain or its lines make so."""
     mesh = promise.mesh
+    low = np.flatnonzero(shape_quality(mesh) < POOR)
+    quads = mesh.quads[low]
     around = np.bincount(mesh.quads.ravel(), minlength=mesh.n_points)
-    corner, on = mesh.points[mesh.quads], (mesh.curve >= 0)[mesh.quads]
+    corner, on = mesh.points[quads], (mesh.curve >= 0)[quads]
     ahead, behind = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
     across = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
     sharp = np.arctan2(across, (ahead * behind).sum(axis=2)) < SHARP
-    sharp &= mesh.fixed[mesh.quads] & np.roll(on, -1, axis=1) & np.roll(on, 1, axis=1)
-    cornered = (sharp | ((around == 1) & mesh.fixed)[mesh.quads]).any(axis=1)
-    return np.flatnonzero((shape_quality(mesh) < POOR) & ~cornered)
+    sharp &= mesh.fixed[quads] & np.roll(on, -1, axis=1) & np.roll(on, 1, axis=1)
+    cornered = (sharp | ((around == 1) & mesh.fixed)[quads]).any(axis=1)
+    return low[~cornered]
 
 
 def _repaired(
