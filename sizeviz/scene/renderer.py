@@ -11,7 +11,7 @@ import numpy as np
 from sizeviz.scene.spec import CellLayer, Color, ImageLayer, Layer, LineLayer, SceneSpec, TriangleLayer
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -57,11 +57,34 @@ class Renderer:
     def __init__(self, plotter: Any) -> None:
         self._plotter = plotter
         self._shown: dict[str, _Shown] = {}
+        self._made: dict[str, _Shown] = {}
         self.spec: SceneSpec | None = None
         self._edges = False
         plotter.camera_set = True  # it is set by ``look``; asked for unset, pyvista would fit it and draw
         plotter.enable_parallel_projection()
         plotter.remove_all_lights()
+
+    def prepare(self, spec: SceneSpec) -> Iterator[None]:
+        """Make what a scene needs and is not there, a run of a layer's cells a step, for ``show`` to take.
+
+        Until then the plotter shows what it showed. A preparation that is not gone through to its end is forgotten.
+
+        Parameters
+        ----------
+        spec : SceneSpec
+            What is to be shown next.
+        """
+        made: dict[str, _Shown] = {}
+        for layer in spec.layers:
+            old = self._shown.get(layer.name)
+            if old is not None and _same_geometry(old.layer, layer):
+                continue
+            parts = []
+            for part in _parts(layer, made.values()):
+                parts.append(part)
+                yield
+            made[layer.name] = _Shown(layer, tuple(parts))
+        self._made = made
 
     def show(self, spec: SceneSpec, edges: bool | None = None) -> bool:
         """Bring the plotter to a scene; the caller decides when to draw.
@@ -92,6 +115,7 @@ class Renderer:
             edges = any(isinstance(layer, CellLayer) and layer.edges is not None for layer in spec.layers)
         differs |= self.show_edges(edges)
         self._shown = {layer.name: self._shown[layer.name] for layer in spec.layers}  # back to front, old and new
+        self._made = {}
         self._lift(2.0 * self._plotter.camera.GetParallelScale())
         self.spec = spec
         return differs or bool(gone)
@@ -164,57 +188,63 @@ class Renderer:
             _recolor(layer, old.parts)
             return True
         self._remove(layer.name)
-        twin = self._twin(layer)
-        parts = []
-        for start, stop, data, texture in _datasets(layer) if twin is None else twin:
-            actor = self._add(layer, data, texture)
-            actor.GetProperty().SetEdgeVisibility(isinstance(layer, CellLayer) and self._edges)
-            actor.SetVisibility(self._is_seen(layer))
-            parts.append(_Part(start, stop, data, actor))
-        self._shown[layer.name] = _Shown(layer, tuple(parts))
+        made = self._made.get(layer.name)
+        if made is None or made.layer is not layer:
+            made = _Shown(layer, tuple(_parts(layer, self._shown.values())))
+        for part in made.parts:
+            part.actor.GetProperty().SetEdgeVisibility(isinstance(layer, CellLayer) and self._edges)
+            part.actor.SetVisibility(self._is_seen(layer))
+            self._plotter.renderer.AddActor(part.actor)
+        self._shown[layer.name] = made
         return True
-
-    def _twin(self, layer: Layer) -> list[tuple[int, int, Any, Any]] | None:
-        """Return what is there already of the same lines, where these have no colours of their own."""
-        if not isinstance(layer, LineLayer) or layer.colors is not None:
-            return None
-        for shown in self._shown.values():
-            other = shown.layer
-            if isinstance(other, LineLayer) and other.points is layer.points and other.segments is layer.segments:
-                return [(part.start, part.stop, part.data, None) for part in shown.parts]
-        return None
-
-    def _add(self, layer: Layer, data: Any, texture: Any) -> Any:
-        """Add an actor by VTK's own means: pyvista's takes three times as long, for what is not used here."""
-        from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
-
-        mapper = vtkPolyDataMapper()
-        mapper.SetInputData(data)
-        rgb = isinstance(layer, CellLayer | TriangleLayer) or (
-            isinstance(layer, LineLayer) and layer.colors is not None
-        )
-        mapper.SetScalarVisibility(rgb)
-        mapper.SetColorModeToDirectScalars()
-        actor = vtkActor()
-        actor.SetMapper(mapper)
-        actor.SetPickable(False)
-        actor.GetProperty().SetLighting(False)
-        if texture is not None:
-            actor.SetTexture(texture)
-            actor.GetProperty().SetColor(1.0, 1.0, 1.0)  # the texture is multiplied by it
-        if isinstance(layer, LineLayer):
-            actor.GetProperty().SetColor(*_unit(layer.color))
-            actor.GetProperty().SetLineWidth(layer.width if layer.colors is None else 1.0)
-        if isinstance(layer, CellLayer):
-            actor.GetProperty().SetEdgeColor(*_unit(layer.edges or (40, 40, 40)))
-            actor.GetProperty().SetEdgeOpacity(EDGE_OPACITY)
-        self._plotter.renderer.AddActor(actor)
-        return actor
 
     def _remove(self, name: str) -> None:
         if name in self._shown:
             for part in self._shown.pop(name).parts:
                 self._plotter.renderer.RemoveActor(part.actor)
+
+
+def _parts(layer: Layer, others: Iterable[_Shown]) -> Iterator[_Part]:
+    """Make what draws a layer, a run of cells at a time; lines that one of the others draws already share its data."""
+    twin = _twin(layer, others)
+    for start, stop, data, texture in _datasets(layer) if twin is None else twin:
+        yield _Part(start, stop, data, _actor(layer, data, texture))
+
+
+def _twin(layer: Layer, others: Iterable[_Shown]) -> list[tuple[int, int, Any, Any]] | None:
+    """Return what is there already of the same lines, where these have no colours of their own."""
+    if not isinstance(layer, LineLayer) or layer.colors is not None:
+        return None
+    for shown in others:
+        other = shown.layer
+        if isinstance(other, LineLayer) and other.points is layer.points and other.segments is layer.segments:
+            return [(part.start, part.stop, part.data, None) for part in shown.parts]
+    return None
+
+
+def _actor(layer: Layer, data: Any, texture: Any) -> Any:
+    """Return an actor made by VTK's own means: pyvista's takes three times as long, for what is not used here."""
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    rgb = isinstance(layer, CellLayer | TriangleLayer) or (isinstance(layer, LineLayer) and layer.colors is not None)
+    mapper.SetScalarVisibility(rgb)
+    mapper.SetColorModeToDirectScalars()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.SetPickable(False)
+    actor.GetProperty().SetLighting(False)
+    if texture is not None:
+        actor.SetTexture(texture)
+        actor.GetProperty().SetColor(1.0, 1.0, 1.0)  # the texture is multiplied by it
+    if isinstance(layer, LineLayer):
+        actor.GetProperty().SetColor(*_unit(layer.color))
+        actor.GetProperty().SetLineWidth(layer.width if layer.colors is None else 1.0)
+    if isinstance(layer, CellLayer):
+        actor.GetProperty().SetEdgeColor(*_unit(layer.edges or (40, 40, 40)))
+        actor.GetProperty().SetEdgeOpacity(EDGE_OPACITY)
+    return actor
 
 
 def _recolor(layer: Layer, parts: tuple[_Part, ...]) -> None:

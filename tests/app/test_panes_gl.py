@@ -225,3 +225,30 @@ def test_no_pane_stays_blank_after_the_first_run_or_any_other(qtbot, tmp_path) -
                 picture = person.look_at(pane)
                 assert pane.surface.isVisible() and orange_share(picture) + blue_share(picture) > 0.2, (n, wait, name)
         window.close()
+
+
+def test_a_large_mesh_is_handed_over_in_turns_and_the_latest_scene_wins(window, monkeypatch) -> None:
+    person, pane = Person(window), window.board.panes[0]
+    view = pane.surface.canvas.view
+    first = person.look_at(pane).astype(int)
+    specs = [pane.spec]
+    window.controller.set_source(fake_source("again"), "Open again")
+    person.wait_settled(10)
+    specs.append(pane.spec)
+    monkeypatch.setattr("sizeviz.scene.renderer.SLICE", 60)
+    monkeypatch.setattr("sizeviz.app.panes.view.PIECE_SECONDS", 0.0)
+    shown, edges = view._scene.spec, view._scene._edges
+    view.show_scene(specs[0], edges)
+    assert view.is_drawing and view._scene.spec is shown  # nothing of it is seen before all of it is there
+    view.show_edges(not edges)
+    QApplication.processEvents()
+    assert view.is_drawing and view._scene.spec is shown
+    assert view._scene._edges == edges
+    view.show_scene(specs[1], edges)  # the first is not wanted any more
+    view.show_scene(specs[0], not edges)
+    view.show_edges(edges)
+    person.wait(lambda: not view.is_drawing, 10)
+    assert view._scene.spec is specs[0] and view._scene._edges == edges
+    parts = sum(len(layer.parts) for layer in view._scene._shown.values())
+    assert view.renderer.GetActors().GetNumberOfItems() == parts > 8  # of the scenes let go nothing stays
+    assert np.abs(person.look_at(pane).astype(int) - first).mean() < 0.5

@@ -13,6 +13,8 @@ from sizeviz.scene.camera import Camera2D
 from sizeviz.scene.renderer import Renderer
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from qtpy.QtGui import QResizeEvent
     from qtpy.QtWidgets import QWidget
 
@@ -28,7 +30,7 @@ LEAST_COVER = 0.6
 """Share of the pane, along either side, that a moved picture must still cover; below it the scene is drawn anew."""
 
 PIECE_SECONDS = 0.012
-"""A turn of the event loop draws pieces of a large scene until this is over."""
+"""A turn of the event loop prepares or draws pieces of a large scene until this is over."""
 
 COLOR_BUFFER, NOT_FURTHER = 0x4000, 0x0203
 NEAREST, LINEAR = 0x2600, 0x2601
@@ -41,8 +43,9 @@ class PaneView(QtInteractor):
     unchanged copies the last frame, and while the camera of a slow scene moves, the last frame moves with it: what is
     on the screen follows the hand at the cost of one copy, and becomes sharp when the hand rests.
 
-    A large scene is drawn in pieces, a few in each turn of the event loop, into VTK's own frame buffer; the last frame
-    stays on the screen until the new one is whole. So the window never stands still for a drawing, however large.
+    A large scene is handed to VTK and drawn in pieces, a few in each turn of the event loop. The drawing goes into
+    VTK's own frame buffer, and the last frame stays on the screen until the new one is whole: the window never stands
+    still for a drawing, however large.
 
     Parameters
     ----------
@@ -65,6 +68,8 @@ class PaneView(QtInteractor):
         self._next_piece = 0
         self._under_way = self._wanted, (0, 0)
         self._turn = Turns(self)
+        self._coming: tuple[SceneSpec, bool] | None = None
+        self._preparing = Turns(self)
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
         self._rest.setInterval(REST_MS)
@@ -78,18 +83,19 @@ class PaneView(QtInteractor):
     @property
     def is_drawing(self) -> bool:
         """Whether a scene is on its way to the screen."""
-        return self._turn.is_busy or (self._dirty and self.isVisible())
+        return self._coming is not None or self._turn.is_busy or (self._dirty and self.isVisible())
 
     def show_scene(self, spec: SceneSpec, edges: bool) -> None:
-        """Take another scene; only what differs is touched."""
-        ground = spec.ground
-        self._ground = ground[0] / 255.0, ground[1] / 255.0, ground[2] / 255.0
-        if self._scene.show(spec, edges):
-            self.redraw()
+        """Take another scene; only what differs is touched, and a large mesh is handed to VTK over several turns."""
+        self._coming = spec, edges
+        self._preparing.drop()
+        self._prepare_on(self._scene.prepare(spec))
 
     def show_edges(self, visible: bool) -> None:
         """Draw or hide the element edges; while a frame is moved they wait for the next one."""
-        if self._scene.show_edges(visible) and (self._turn.is_busy or not self.is_moving):
+        if self._coming is not None:
+            self._coming = self._coming[0], visible
+        elif self._scene.show_edges(visible) and (self._turn.is_busy or not self.is_moving):
             self.redraw()
 
     def redraw(self) -> None:
@@ -120,6 +126,8 @@ class PaneView(QtInteractor):
         """Draw no more."""
         self._rest.stop()
         self._turn.drop()
+        self._preparing.drop()
+        self._coming = None
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Take another size; what is drawn for it comes with the next paint."""
@@ -145,6 +153,19 @@ class PaneView(QtInteractor):
             self._clear()
         elif not resized or not self._turn.is_busy or not self._next_piece:
             self._copy()  # else VTK's buffers have another size already, and what is on the screen stays there
+
+    def _prepare_on(self, steps: Iterator[None]) -> None:
+        """Hand more of the coming scene to VTK; once all of it is there it takes the present one's place."""
+        began = time.perf_counter()
+        for _ in steps:
+            if time.perf_counter() - began > PIECE_SECONDS:
+                self._preparing.take({"prepare": lambda: self._prepare_on(steps)})
+                return
+        assert self._coming is not None
+        (spec, edges), self._coming = self._coming, None
+        self._ground = spec.ground[0] / 255.0, spec.ground[1] / 255.0, spec.ground[2] / 255.0
+        if self._scene.show(spec, edges):
+            self.redraw()
 
     def _draw_whole(self) -> None:
         began = time.perf_counter()
