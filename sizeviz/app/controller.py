@@ -302,6 +302,8 @@ class Controller(QObject):
             self.refused.emit()
 
     def _on_changed(self, old: Study | None, new: Study) -> None:
+        domain = new.source.domain
+        self._last_good = {method: last for method, last in self._last_good.items() if last.domain is domain}
         for method, run in new.runs.items():
             if run.is_complete:
                 self._last_good[method] = subject_of(new, method)

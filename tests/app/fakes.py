@@ -117,6 +117,9 @@ class FlatCanvas:
     def show_scene(self, spec) -> None:
         self.spec = spec
 
+    def clear(self) -> None:
+        self.spec = None
+
     def look(self, camera) -> None:
         self.camera = camera
 

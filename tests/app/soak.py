@@ -28,6 +28,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 SCREEN = "1700x1100x24"
+SIZE = (1500, 940)
 LONGEST_STALL = 0.25
 """Seconds that the window may be deaf."""
 
@@ -144,7 +145,7 @@ class Soak:
 
         self.draw, self.folder, self.record = random.Random(seed), folder, Record()
         self.window = MainWindow(PipelineEngine(), Settings(str(folder / "settings.ini")))
-        self.window.resize(1500, 940)
+        self.window.resize(*SIZE)
         self.window.show()
         self.window.activateWindow()
         self.person = Person(self.window)
@@ -186,15 +187,23 @@ class Soak:
             self.record.errors.append(f"{name}\n{traceback.format_exc()}")
 
     def _rest(self, watch: Watch) -> None:
-        """Bring the window to where it began: one study, an empty history; then measure."""
+        """Bring the window to where it began: its size, one study with its options, an empty history; then measure.
+
+        What the memory is compared with is then the same in all but time.
+        """
+        from sizeviz.study import StudyOptions
+
         window, person = self.window, self.person
         watch.action = "rest"
         window.actions_["paint"].setChecked(False)
         window.controller.cancel()
         person.wait(lambda: not window.controller.jobs.is_busy, 120)
-        window.controller.open_source("valley")
-        person.wait_settled(120)
+        window.resize(*SIZE)
         window.actions_["panes-2"].trigger()
+        window.controller.open_source("valley")
+        person.wait(lambda: not window.controller.jobs.is_busy, 120)
+        window.controller.change(lambda options: StudyOptions(), "Reset")
+        person.wait_settled(120)
         window.controller.store.stack.clear()
         person.rest(200)
         self._measure()

@@ -119,11 +119,14 @@ def test_an_idle_window_draws_nothing(window, monkeypatch) -> None:
 
 
 def test_canvases_are_made_once(window) -> None:
-    canvases = [pane.surface.canvas for pane in window.board.panes]
+    canvases, person = [pane.surface.canvas for pane in window.board.panes], Person(window)
     for count in (4, 2, 3, 2):
         window.actions_[f"panes-{count}"].trigger()
+        person.wait_settled(10)
     assert [pane.surface.canvas for pane in window.board.panes[:2]] == canvases
     assert len(window.board.panes) == 4
+    drawn = [pane.surface.canvas.view.renderer.GetActors().GetNumberOfItems() for pane in window.board.panes]
+    assert min(drawn[:2]) > 0 and drawn[2:] == [0, 0]  # what nobody sees takes no memory
     assert all(isinstance(canvas.widget(), QWidget) for canvas in canvases)
 
 

@@ -1,8 +1,10 @@
 from __future__ import annotations
 
 import csv
+import gc
 import io
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -94,6 +96,22 @@ def test_one_to_four_panes(opened, count: int) -> None:
     opened.actions_[f"panes-{count}"].trigger()
     assert len([pane for pane in opened.board.panes if pane.isVisible()]) == count
     assert all(pane.spec.scale is not None for pane in opened.board.visible_panes)
+
+
+def test_hidden_panes_and_earlier_sources_keep_no_mesh(qtbot, opened) -> None:
+    opened.actions_["panes-4"].trigger()
+    Person(opened).wait_settled(10)
+    meshes = [weakref.ref(pane.subject.mesh) for pane in opened.board.visible_panes]
+    opened.actions_["panes-2"].trigger()
+    hidden = opened.board.panes[2:]
+    assert all(pane.spec is None and pane.subject.mesh is None and pane.surface.canvas.spec is None for pane in hidden)
+    opened.controller.open_source("again")
+    Person(opened).wait_settled(10)
+    opened.controller.store.stack.clear()
+    qtbot.waitUntil(lambda: not gc.collect() and not any(mesh() for mesh in meshes), timeout=5000)
+    opened.actions_["panes-4"].trigger()
+    Person(opened).wait_settled(10)
+    assert all(pane.spec.scale is not None and pane.subject.mesh is not None for pane in opened.board.visible_panes)
 
 
 def test_hover_reads_and_click_pins_the_element_under_the_cursor(qtbot, opened) -> None:

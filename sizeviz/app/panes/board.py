@@ -130,6 +130,8 @@ class PaneBoard(QWidget):
             pane.setVisible(k < count)
             if k < count:
                 self._grid.addWidget(pane, k // columns, k % columns)
+            elif pane.spec is not None:
+                pane.forget()
         for k in range(4):
             self._grid.setColumnStretch(k, int(k < columns))
         self.set_active(self.active)

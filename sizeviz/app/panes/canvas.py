@@ -35,6 +35,9 @@ class Canvas(Protocol):
     def show_scene(self, spec: SceneSpec) -> None:
         """Take another scene; it is drawn as soon as the event loop comes round."""
 
+    def clear(self) -> None:
+        """Show nothing, and keep nothing of what was shown."""
+
     def look(self, camera: Camera2D) -> None:
         """Look elsewhere."""
 
@@ -96,6 +99,15 @@ class GLCanvas:
             self._is_used = True
             self._ready().show_scene(spec, self._edges)
 
+    def clear(self) -> None:
+        """Leave an empty pane in the colour of its surroundings, and keep nothing of what was shown."""
+        from sizeviz.scene.spec import SceneSpec
+
+        if self._view is not None:
+            ground = self._holder.palette().base().color()
+            colors = ground.red(), ground.green(), ground.blue()
+            self._view.show_scene(SceneSpec((), (0.0, 0.0, 1.0, 1.0), ground=colors), False)
+
     def look(self, camera: Camera2D) -> None:
         """Look elsewhere; a scene that is slow to draw follows with its last frame until the camera rests."""
         self._camera = camera
@@ -120,14 +132,8 @@ class GLCanvas:
             self._ready().rehearse(rehearsal_scene(), edges)
 
     def _forget_rehearsal(self) -> None:
-        """Leave an empty pane in the colour of its surroundings."""
-        from sizeviz.scene.spec import SceneSpec
-
         if not self._is_used:
-            ground = self._holder.palette().base().color()
-            self._ready().show_scene(
-                SceneSpec((), (0.0, 0.0, 1.0, 1.0), ground=(ground.red(), ground.green(), ground.blue())), False
-            )
+            self.clear()
 
     def _ready(self) -> PaneView:
         if self._view is None:

@@ -118,6 +118,11 @@ class Pane(QFrame):
         about_mesh = self.view.color_by not in FIELD_QUANTITIES
         self.badge.setVisible(stale and about_mesh and spec.scale is not None)
 
+    def forget(self) -> None:
+        """Keep nothing of what was shown: a pane that nobody sees must not hold the memory of a mesh."""
+        self.subject, self.spec = Subject(), None
+        self.surface.canvas.clear()
+
     def set_edge_rule(self, rule: Callable[[], bool]) -> None:
         """Give the rule that says whether elements are now large enough for their edges."""
         self._edges = rule
