@@ -204,6 +204,11 @@ class Renderer:
                 self._plotter.renderer.RemoveActor(part.actor)
 
 
+def is_large(spec: SceneSpec) -> bool:
+    """Return whether a scene has more cells than one piece of a drawing, ``SLICE``."""
+    return sum(len(_cells(layer)) for layer in spec.layers if not isinstance(layer, ImageLayer)) > SLICE
+
+
 def _parts(layer: Layer, others: Iterable[_Shown]) -> Iterator[_Part]:
     """Make what draws a layer, a run of cells at a time; lines that one of the others draws already share its data."""
     twin = _twin(layer, others)

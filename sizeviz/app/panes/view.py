@@ -10,7 +10,7 @@ from qtpy.QtCore import QTimer
 
 from sizeviz.app.turns import Turns
 from sizeviz.scene.camera import Camera2D
-from sizeviz.scene.renderer import Renderer
+from sizeviz.scene.renderer import Renderer, is_large
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,7 +29,7 @@ REST_MS = 110
 LEAST_COVER = 0.6
 """Share of the pane, along either side, that a moved picture must still cover; below it the scene is drawn anew."""
 
-PIECE_SECONDS = 0.012
+PIECE_SECONDS = 0.006
 """A turn of the event loop prepares or draws pieces of a large scene until this is over."""
 
 COLOR_BUFFER, NOT_FURTHER = 0x4000, 0x0203
@@ -89,7 +89,11 @@ class PaneView(QtInteractor):
         """Take another scene; only what differs is touched, and a large mesh is handed to VTK over several turns."""
         self._coming = spec, edges
         self._preparing.drop()
-        self._prepare_on(self._scene.prepare(spec))
+        steps = self._scene.prepare(spec)
+        if is_large(spec):
+            self._preparing.take({"prepare": lambda: self._prepare_on(steps)})  # whoever asks has a turn's work already
+        else:
+            self._prepare_on(steps)
 
     def show_edges(self, visible: bool) -> None:
         """Draw or hide the element edges; while a frame is moved they wait for the next one."""
