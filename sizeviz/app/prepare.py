@@ -92,8 +92,10 @@ def _load() -> None:
     for name in PRELOADED:
         import_module(name)
     from numba.core import entrypoints
+    from numba.core.compiler_lock import global_compiler_lock
     from numba.core.registry import cpu_target
 
-    entrypoints.init_all()  # what the first call of the first kernel would do, in the middle of a run
-    cpu_target.typing_context.refresh()
-    cpu_target.target_context.refresh()
+    with global_compiler_lock:  # a run that was begun at once may be loading its first kernel at this moment
+        entrypoints.init_all()  # what the first call of the first kernel would do, in the middle of a run
+        cpu_target.typing_context.refresh()
+        cpu_target.target_context.refresh()

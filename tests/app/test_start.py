@@ -22,3 +22,17 @@ window.close()
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_what_is_loaded_ahead_waits_for_a_kernel_that_is_being_loaded(monkeypatch) -> None:
+    """A run begun with the window loads its first kernel meanwhile; numba's registries bear one thread at a time."""
+    from numba.core.compiler_lock import global_compiler_lock
+    from numba.core.registry import cpu_target
+
+    from sizeviz.app.prepare import _load
+
+    locked = []
+    for context in (cpu_target.typing_context, cpu_target.target_context):
+        monkeypatch.setattr(context, "refresh", lambda: locked.append(global_compiler_lock.is_locked()))
+    _load()
+    assert locked == [True, True]
