@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from sizeviz.cli.options import MethodName, OutArgument, PipelineOptions, SourceArgument
+from sizeviz.cli.values import Whole
 
 if TYPE_CHECKING:
     from sizeviz.study.evolution import Evolution
@@ -32,9 +33,9 @@ class ProcessOptions:
         middle of every edge and element.
     """
 
-    iterations: int = 50
+    iterations: Whole = 50
     limit: float = 1.1
-    cells: int = 80
+    cells: Whole = 80
     background: Literal["refined", "nodes"] = "refined"
 
 

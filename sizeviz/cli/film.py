@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from sizeviz.cli.options import FileArgument, PipelineOptions
+from sizeviz.cli.values import Whole
 
 if TYPE_CHECKING:
     from sizeviz.monitor import Monitor
@@ -35,8 +36,8 @@ class TurnOptions:
 
     first: float = 1.0
     last: float = 6.0
-    takes: int = 24
-    width: int = 1280
+    takes: Whole = 24
+    width: Whole = 1280
     dark: Annotated[bool, Parameter(negative="")] = False
 
 

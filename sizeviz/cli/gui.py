@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
+from sizeviz.cli.values import Place
+
 
 def gui(
     *files: Annotated[str, Parameter(help="An example, a file, or expr:FORMULA; the first one is opened.")],
-    grab: Annotated[Path | None, Parameter(help="Run to the end, save what the window shows, and leave.")] = None,
+    grab: Annotated[Place | None, Parameter(help="Run to the end, save what the window shows, and leave.")] = None,
 ) -> int:
     """Open the window: load or paint a size field, run, compare side by side."""
     from sizeviz.app import main

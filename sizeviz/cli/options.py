@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from sizeviz.cli.terminal import notice
+from sizeviz.cli.values import Place, Whole
 
 if TYPE_CHECKING:
     from sizeviz.geometry import Domain
@@ -31,8 +31,8 @@ SourceArgument = Annotated[
     str,
     Parameter(help="An example (see sizeviz examples), a file, or expr:FORMULA in x and y."),
 ]
-OutArgument = Annotated[Path, Parameter(name="--out", help="Folder for the results; created if need be.")]
-FileArgument = Annotated[Path, Parameter(name=["--output", "-o"], help="File to write; its suffix is the format.")]
+OutArgument = Annotated[Place, Parameter(name="--out", help="Folder for the results; created if need be.")]
+FileArgument = Annotated[Place, Parameter(name=["--output", "-o"], help="File to write; its suffix is the format.")]
 
 
 @Parameter(name="*")
@@ -60,8 +60,8 @@ class FieldOptions:
     alpha: float = 2.0
     beta: float = 1.0
     distance: DistanceName = "euclidean"
-    domain: Path | None = None
-    threads: int | None = None
+    domain: Place | None = None
+    threads: Whole | None = None
 
 
 @Parameter(name="*")
@@ -97,8 +97,8 @@ class PipelineOptions(FieldOptions):
     smooth: bool = True
     guarantee: bool | None = None
     measure: MeasureName = "mean-edge"
-    seed: int = 0
-    max_elements: int = 5_000_000
+    seed: Whole = 0
+    max_elements: Whole = 5_000_000
 
 
 def study_options(options: FieldOptions, *, comparable: bool = False) -> StudyOptions:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from cyclopts import Parameter
 
 from sizeviz.cli.options import OutArgument
+from sizeviz.cli.values import Whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,8 +36,8 @@ class Choices:
     """
 
     mesh_scale: float = 0.83
-    iterations: int = 50
-    threads: int | None = None
+    iterations: Whole = 50
+    threads: Whole | None = None
 
 
 def paper(*, out: OutArgument, choices: Choices | None = None) -> None:

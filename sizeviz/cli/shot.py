@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from sizeviz.cli.options import FileArgument, MeasureName
+from sizeviz.cli.values import Place, Whole
 
 if TYPE_CHECKING:
     from sizeviz.conformity import Measure
@@ -21,17 +22,17 @@ RunName = Literal["none", "gradient-limiting", "size-preserving", "guaranteed"]
 
 
 def shot(
-    file: Annotated[Path, Parameter(help="A study (.sizeviz), or a mesh of quadrilaterals such as mesh.vtu.")],
+    file: Annotated[Place, Parameter(help="A study (.sizeviz), or a mesh of quadrilaterals such as mesh.vtu.")],
     /,
     *,
     output: FileArgument,
     color_by: Annotated[QuantityName, Parameter(help="What the colours mean.")] = "ratio",
     method: Annotated[RunName | None, Parameter(help="Which run of a study; a page holds all.")] = None,
     source: Annotated[str | None, Parameter(help="Judge a mesh anew against this source.")] = None,
-    domain: Annotated[Path | None, Parameter(help="Outline of the domain of that source.")] = None,
+    domain: Annotated[Place | None, Parameter(help="Outline of the domain of that source.")] = None,
     beta: Annotated[float, Parameter(help="Scale of the size asked for, in that judgement.")] = 1.0,
     measure: Annotated[MeasureName, Parameter(help="Size of an element.")] = "mean-edge",
-    width: Annotated[int, Parameter(help="Pixels across; a vector figure has 200 an inch.")] = 1400,
+    width: Annotated[Whole, Parameter(help="Pixels across; a vector figure has 200 an inch.")] = 1400,
     edges: Annotated[bool | None, Parameter(help="Draw element edges; by default below 12,000 elements.")] = None,
     dark: Annotated[bool, Parameter(negative="", help="Dark ground.")] = False,
 ) -> None:

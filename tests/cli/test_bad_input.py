@@ -139,6 +139,26 @@ def test_sizes_that_ask_for_far_too_many_elements_are_refused_at_once(
     assert time.process_time() - began < 5.0 and not out.exists()
 
 
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        (["run", "ring", "--out", "o", "--threads", "1.5"], "--threads: '1.5' is not a whole number"),
+        (["run", "ring", "--out", "o", "--seed", "1e3"], "--seed: '1e3' is not a whole number"),
+        (["adapt", "ring", "--out", "o", "--cells", "x"], "--cells: 'x' is not a whole number"),
+        (["run", "ring", "--out", ""], "--out: the name of the file or folder is empty"),
+        (["field", "ring", "-o", ""], "-o: the name of the file or folder is empty"),
+        (["run", "ring", "--out", "o", "--domain", " "], "--domain: the name of the file or folder is empty"),
+        (["shot", "", "-o", "a.png"], "the name of the file or folder is empty"),
+    ],
+)
+def test_no_count_is_rounded_and_no_name_is_empty(
+    typed: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert words in refused(typed, capsys)
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("typed", [["run", "--out", "o"], ["film", "-o", "o.gif"]])
 def test_a_source_with_a_name_too_long_for_a_file(typed: list[str], capsys: pytest.CaptureFixture) -> None:
     assert "there is no such example or file" in refused([*typed, "x" * 5000], capsys)
