@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import subprocess
 import sys
 
@@ -36,3 +37,30 @@ def test_what_is_loaded_ahead_waits_for_a_kernel_that_is_being_loaded(monkeypatc
         monkeypatch.setattr(context, "refresh", lambda: locked.append(global_compiler_lock.is_locked()))
     _load()
     assert locked == [True, True]
+
+
+def test_threads_share_one_arena_once_the_application_is_made() -> None:
+    script = """
+import threading
+from sizeviz.app.launch import application
+app = application()
+blocks = []
+threads = [threading.Thread(target=lambda: blocks.append(bytearray(100_000))) for _ in range(4)]
+[thread.start() for thread in threads]
+[thread.join() for thread in threads]
+import ctypes
+libc = ctypes.CDLL(None)
+libc.malloc_info.argtypes = [ctypes.c_int, ctypes.c_void_p]
+libc.fopen.restype = ctypes.c_void_p
+libc.fclose.argtypes = [ctypes.c_void_p]
+import tempfile, os
+with tempfile.NamedTemporaryFile() as file:
+    stream = libc.fopen(file.name.encode(), b"w")
+    libc.malloc_info(0, stream)
+    libc.fclose(stream)
+    print(open(file.name).read().count("<heap nr="))
+"""
+    if platform.libc_ver()[0] != "glibc":
+        return
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout.strip() == "1", done.stderr
