@@ -12,11 +12,11 @@ from sizeviz.app.jobs import Job
 from sizeviz.app.news import Notice
 
 if TYPE_CHECKING:
-    from sizeviz.app.window import MainWindow
+    from sizeviz.app.frame import Frame
     from sizeviz.monitor import Monitor
 
 
-def save_page(window: MainWindow, path: str | None = None) -> None:
+def save_page(window: Frame, path: str | None = None) -> None:
     """Save the meshes of the panes as a page that opens in a browser; asks for the place if none is given."""
     from sizeviz.scene.page import save_page as save
 
@@ -44,7 +44,7 @@ def save_page(window: MainWindow, path: str | None = None) -> None:
     window.controller.jobs.submit(Job(f"saving {target.name}", work, done))
 
 
-def ask_film(window: MainWindow) -> None:
+def ask_film(window: Frame) -> None:
     """Ask what a film of a turning α shows and where it goes, then have it made."""
     if window.controller.study is None:
         return
@@ -54,7 +54,7 @@ def ask_film(window: MainWindow) -> None:
     dialog.open()
 
 
-def save_film(window: MainWindow, turn: Turn, path: str | None = None) -> None:
+def save_film(window: Frame, turn: Turn, path: str | None = None) -> None:
     """Have a film made of the study's methods while α turns; asks for the place if none is given."""
     path = path or ask_place(window, "Save a film of a turning α", "alpha")
     if path:
@@ -62,12 +62,12 @@ def save_film(window: MainWindow, turn: Turn, path: str | None = None) -> None:
         film_study(window.controller, window.files.content(), Path(path).resolve(), typed)
 
 
-def save_process_film(window: MainWindow, folder: Path, path: str | None = None) -> None:
+def save_process_film(window: Frame, folder: Path, path: str | None = None) -> None:
     """Have a film made of an adaptive process, iteration by iteration; asks for the place if none is given."""
     path = path or ask_place(window, "Save a film of the iterations", "adapted")
     if path:
         film_process(window.controller, folder, Path(path).resolve(), _ground(window))
 
 
-def _ground(window: MainWindow) -> list[str]:
+def _ground(window: Frame) -> list[str]:
     return ["--dark"] if window.theme.dark else []

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sizeviz.app.window import MainWindow
+    from sizeviz.app.frame import Frame
     from sizeviz.study import Study
 
 CANVAS_NODES = 257
 CANVAS_SIZE = 0.05
 
 
-def connect_panels(window: MainWindow) -> None:
+def connect_panels(window: Frame) -> None:
     """Send every panel's intents to the controller, and every change back to the widgets."""
     controller, board = window.controller, window.board
     window.files.view_restored.connect(lambda values: restore_view(board, values))
@@ -64,8 +64,8 @@ def connect_panels(window: MainWindow) -> None:
     window.tool.active_changed.connect(lambda on: _on_tool(window, on))
 
 
-def connect_actions(window: MainWindow) -> None:
-    """Say what each command does."""
+def connect_actions(window: Frame, leave_lesson: Callable[[], bool]) -> None:
+    """Say what each command does; Esc leaves a lesson, if there is one to leave, before anything is put down."""
     controller, board, on = window.controller, window.board, window.actions_.on
     on("open", lambda: open_file(window))
     on("canvas", lambda: controller.open_canvas(CANVAS_NODES, CANVAS_SIZE))
@@ -114,10 +114,10 @@ def connect_actions(window: MainWindow) -> None:
     on("theme", lambda dark: window.set_theme(DARK if dark else LIGHT))
     on("log", lambda: window.tabs.setCurrentWidget(window.log))
     on("about", lambda: About(window).open())
-    _connect_keys(window)
+    _connect_keys(window, leave_lesson)
 
 
-def open_file(window: MainWindow) -> None:
+def open_file(window: Frame) -> None:
     """Ask for a file and open it."""
     path, _ = QFileDialog.getOpenFileName(
         window, "Open a study, a size field or an image", "",
@@ -128,7 +128,7 @@ def open_file(window: MainWindow) -> None:
         window.controller.open_source(path)
 
 
-def save_study(window: MainWindow, path: Path | None = None) -> None:
+def save_study(window: Frame, path: Path | None = None) -> None:
     """Save the study; asks for the place if none is given."""
     study = window.controller.study
     if study is None:
@@ -141,7 +141,7 @@ def save_study(window: MainWindow, path: Path | None = None) -> None:
         window.files.save(path)
 
 
-def recover_last(window: MainWindow) -> None:
+def recover_last(window: Frame) -> None:
     """Open the newest study that was left unsaved."""
     found = window.files.leftovers()
     if found:
@@ -150,7 +150,7 @@ def recover_last(window: MainWindow) -> None:
         window.controller.noticed.emit(Notice("info", "There is no unsaved study to recover"))
 
 
-def copy_recipe(window: MainWindow, language: str) -> None:
+def copy_recipe(window: Frame, language: str) -> None:
     """Put on the clipboard what makes the meshes on show again, outside the window.
 
     Painted sizes have no name: a script refers to the study file, a command to the sizes exported beside it.
@@ -180,7 +180,7 @@ def copy_recipe(window: MainWindow, language: str) -> None:
     window.controller.noticed.emit(Notice("info", f"Copied as {language}{exported}"))
 
 
-def save_picture(window: MainWindow, path: str | None = None) -> None:
+def save_picture(window: Frame, path: str | None = None) -> None:
     """Save what the active pane shows, its zoom, colours and verdict included; asks for the place if none is given."""
     from sizeviz.scene.picture import save_picture as save
 
@@ -197,7 +197,7 @@ def save_picture(window: MainWindow, path: str | None = None) -> None:
     _saved(window, path, work)
 
 
-def save_comparison(window: MainWindow, path: str | None = None) -> None:
+def save_comparison(window: Frame, path: str | None = None) -> None:
     """Save the comparison of the methods on show."""
     from sizeviz.scene.comparison import save_comparison as save
 
@@ -210,7 +210,7 @@ def save_comparison(window: MainWindow, path: str | None = None) -> None:
     _saved(window, path, lambda: save(study, path, methods=methods, measure=measure, dark=window.theme.dark))
 
 
-def _saved(window: MainWindow, path: str, work: Callable[[], object]) -> None:
+def _saved(window: Frame, path: str, work: Callable[[], object]) -> None:
     """Draw in the window's thread, where VTK belongs, and say how it went."""
     from sizeviz.errors import SizevizError
 
@@ -222,27 +222,27 @@ def _saved(window: MainWindow, path: str, work: Callable[[], object]) -> None:
     window.controller.noticed.emit(Notice("info", f"Saved {Path(path).name}"))
 
 
-def _ask_picture(window: MainWindow, name: str) -> str:
+def _ask_picture(window: Frame, name: str) -> str:
     path, _ = QFileDialog.getSaveFileName(
         window, "Save a picture", name, "Pictures, vector figures (*.png *.jpg *.tif *.svg *.pdf)"
     )
     return str(path)
 
 
-def _connect_keys(window: MainWindow) -> None:
+def _connect_keys(window: Frame, leave_lesson: Callable[[], bool]) -> None:
     """Esc drops what is under way; Enter finishes a line or polygon."""
     escape = QShortcut(Qt.Key.Key_Escape, window)
-    escape.activated.connect(lambda: _escape(window))
+    escape.activated.connect(lambda: _escape(window, leave_lesson))
     for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
         enter = QShortcut(key, window.board)
         enter.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
         enter.activated.connect(window.tool.finish)
 
 
-def _escape(window: MainWindow) -> None:
+def _escape(window: Frame, leave_lesson: Callable[[], bool]) -> None:
     if window.controller.painting.stroke is not None:
         window.tool.abort()
-    elif window.lessons.escape():
+    elif leave_lesson():
         return
     elif window.tool.active:
         window.actions_["paint"].setChecked(False)
@@ -251,21 +251,21 @@ def _escape(window: MainWindow) -> None:
         window.inspector.set_pin("", None)
 
 
-def _on_study(window: MainWindow, old: Study | None, new: Study) -> None:
+def _on_study(window: Frame, old: Study | None, new: Study) -> None:
     if old is None or old.source.domain is not new.source.domain:
         x0, y0, x1, y1 = new.source.domain.bounds
         window.paint.suit(new.source.field, max(x1 - x0, y1 - y0))
     window.show_study(new)
 
 
-def _on_views(window: MainWindow) -> None:
+def _on_views(window: Frame) -> None:
     window.controller.set_wanted(window.board.methods)
     if window.controller.study is not None:
         window.show_judgement()
         window.show_state()
 
 
-def _on_tool(window: MainWindow, on: bool) -> None:
+def _on_tool(window: Frame, on: bool) -> None:
     action = window.actions_["paint"]
     if action.isChecked() != on:
         action.setChecked(on)
@@ -273,23 +273,23 @@ def _on_tool(window: MainWindow, on: bool) -> None:
         window.sections[1].head.setChecked(True)
 
 
-def _set_measure(window: MainWindow, measure: str) -> None:
+def _set_measure(window: Frame, measure: str) -> None:
     for pane in window.board.panes:
         pane.set_view(pane.view.with_changes(measure=measure), tell=False)
     window.board.refresh()
     _on_views(window)
 
 
-def _color(window: MainWindow, quantity: str) -> None:
+def _color(window: Frame, quantity: str) -> None:
     pane = window.board.active
     changes = {"color_by": quantity, "cmap": None, "range_mode": "auto", "low": None, "high": None, "log": None}
     pane.set_view(pane.view.with_changes(**changes, classes=0))
 
 
-def _zoom(window: MainWindow, factor: float) -> None:
+def _zoom(window: Frame, factor: float) -> None:
     surface = window.board.active.surface
     surface.move_camera(surface.camera.zoomed(factor, surface.camera.x, surface.camera.y))
 
 
-def _select(window: MainWindow, method: str, chosen: NDArray[np.intp] | None) -> None:
+def _select(window: Frame, method: str, chosen: NDArray[np.intp] | None) -> None:
     window.board.select(None if chosen is None else Selection(method, chosen))

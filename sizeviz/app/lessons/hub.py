@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from qtpy.QtWidgets import QWidget
 
+    from sizeviz.app.frame import Frame
     from sizeviz.app.lessons.page import LessonPage
     from sizeviz.app.panes.canvas import Canvas
     from sizeviz.app.theme import Theme
-    from sizeviz.app.window import MainWindow
     from sizeviz.study import Study
 
 PRESENTER_SCALE = 1.5
@@ -38,13 +38,13 @@ class Lessons(QObject):
 
     Parameters
     ----------
-    window : MainWindow
+    window : Frame
         Which.
     make_canvas : callable
         Makes the drawing widget of a lesson's pane.
     """
 
-    def __init__(self, window: MainWindow, make_canvas: Callable[[QWidget], Canvas]) -> None:
+    def __init__(self, window: Frame, make_canvas: Callable[[QWidget], Canvas]) -> None:
         super().__init__(window)
         self._window, self._make_canvas = window, make_canvas
         self._page_before: QWidget | None = None

@@ -15,11 +15,11 @@ from sizeviz.app.lessons.why import WhyController
 from sizeviz.app.news import Notice
 
 if TYPE_CHECKING:
+    from sizeviz.app.frame import Frame
     from sizeviz.app.lessons.ball import BallStory
     from sizeviz.app.lessons.explain import Topic
     from sizeviz.app.lessons.why import Asked
     from sizeviz.app.panes.pane import Pane
-    from sizeviz.app.window import MainWindow
     from sizeviz.geometry import Domain
     from sizeviz.scene.camera import Camera2D
     from sizeviz.scene.view import ViewState
@@ -33,11 +33,11 @@ class PaneLessons(QObject):
 
     Parameters
     ----------
-    window : MainWindow
+    window : Frame
         Which.
     """
 
-    def __init__(self, window: MainWindow) -> None:
+    def __init__(self, window: Frame) -> None:
         super().__init__(window)
         self._window = window
         self.panel = ExplainPanel()
