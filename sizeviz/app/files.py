@@ -6,6 +6,7 @@ import logging
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import ref
 
 from qtpy.QtCore import QObject, QTimer, Signal
 
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from sizeviz.app.controller import Controller
     from sizeviz.geometry import QuadMesh
     from sizeviz.monitor import Monitor
-    from sizeviz.study import Study
+    from sizeviz.sources import Source
+    from sizeviz.study import Study, StudyOptions
     from sizeviz.study.storage import StudyFile
     from sizeviz.study.storage.autosave import Autosave, Leftover
 
@@ -68,8 +70,8 @@ class StudyFiles(QObject):
         super().__init__(parent)
         self.path: Path | None = None
         self._controller, self._folder, self._view = controller, folder, view
-        self._base: Study | None = None  # what is on disk, or was opened; its results do not count
-        self._kept: Study | None = None  # what the autosave holds
+        self._base: tuple[Source, StudyOptions] | None = None  # what is on disk, or was opened
+        self._kept: Callable[[], Study | None] = lambda: None  # what the autosave holds, while anybody else holds it
         self._autosave: Autosave | None = None
         self._complained = False
         self._stamp: tuple[int, ...] | None = None  # of the file, when it was last read or written here
@@ -89,13 +91,13 @@ class StudyFiles(QObject):
         study, base = self._controller.study, self._base
         if study is None:
             return False
-        return base is None or study.source is not base.source or study.options != base.options
+        return base is None or study.source is not base[0] or study.options != base[1]
 
     @property
     def source_path(self) -> Path | None:
         """The study file that holds the sizes as they are now, None where none does."""
         study, base = self._controller.study, self._base
-        same = study is not None and base is not None and study.source is base.source
+        same = study is not None and base is not None and study.source is base[0]
         return self.path if same else None
 
     # -- opening ---------------------------------------------------------------------------------------------------
@@ -108,7 +110,7 @@ class StudyFiles(QObject):
 
         def done(content: StudyFile) -> None:
             self._take(content, f"Open {Path(path).name}")
-            self.path, self._base, self._stamp = Path(path), self._controller.study, stamp
+            self.path, self._base, self._stamp = Path(path), _without_results(self._controller.study), stamp
             self._controller.opened.emit(path)
 
         self._read(f"opening {path}", lambda: read_study(path), done)
@@ -169,10 +171,10 @@ class StudyFiles(QObject):
         content = self.content()
 
         def done(_: object) -> None:
-            self.path, self._base, self._stamp = path, content.study, stamp_of(path)
+            self.path, self._base, self._stamp = path, _without_results(content.study), stamp_of(path)
             if not self.is_modified and self._autosave is not None:
                 self._autosave.discard()
-                self._kept = None
+                self._kept = lambda: None
             self._controller.noticed.emit(Notice("info", f"Saved {path.name}"))
             self.state_changed.emit()
 
@@ -180,7 +182,7 @@ class StudyFiles(QObject):
 
     def autosave(self) -> None:
         """Keep a copy of what would be lost, beside the window's thread."""
-        if not self.is_modified or self._controller.study is self._kept:
+        if not self.is_modified or self._controller.study is self._kept():
             return
         if self._saving.is_busy or self._controller.painting.stroke is not None:
             self._timer.start()
@@ -192,7 +194,7 @@ class StudyFiles(QObject):
         """Leave unsaved changes behind for the next time, and nothing where there are none; never ask."""
         self._timer.stop()
         self._saving.shut_down(60_000)
-        if self.is_modified and self._controller.study is not self._kept:
+        if self.is_modified and self._controller.study is not self._kept():
             self._keep(self.content())
         if self._autosave is not None:
             if self.is_modified:
@@ -234,7 +236,7 @@ class StudyFiles(QObject):
         self._autosave.save(content, content.origin)
 
     def _wrote(self, content: StudyFile) -> None:
-        self._kept, self._complained = content.study, False
+        self._kept, self._complained = ref(content.study), False
 
     def _keep(self, content: StudyFile) -> bool:
         """Autosave here and now; return whether that worked."""
@@ -248,14 +250,14 @@ class StudyFiles(QObject):
 
     def _on_changed(self, old: Study | None, new: Study) -> None:
         if old is None:
-            self._base = new
+            self._base = _without_results(new)
         if self.is_modified and not self._timer.isActive():
             self._timer.start()
         self.state_changed.emit()
 
     def _on_opened(self, spec: str) -> None:
         """Something was opened: until it is changed there is nothing to lose."""
-        self._base = self._controller.study
+        self._base = _without_results(self._controller.study)
         if not spec.endswith(".sizeviz"):
             self.path = None
         self.state_changed.emit()
@@ -266,6 +268,11 @@ class StudyFiles(QObject):
         if not quiet:  # a disk stays full for a while: once is enough
             words = f"Autosave: {failure.message}" if job.title == AUTOSAVING else failure.message
             self._controller.noticed.emit(Notice("error", words, f"{job.title}\n\n{failure.details}"))
+
+
+def _without_results(study: Study | None) -> tuple[Source, StudyOptions] | None:
+    """Return what a file of a study is compared by; its meshes need not be held for that."""
+    return None if study is None else (study.source, study.options)
 
 
 def stamp_of(path: Path) -> tuple[int, ...] | None:

@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import errno
+import gc
 import os
+from weakref import ref
 
 import numpy as np
 import pytest
@@ -40,6 +42,24 @@ def another_window(qtbot, folder) -> MainWindow:
     qtbot.addWidget(window)
     window.show()
     return window
+
+
+@pytest.mark.parametrize("way", ["save", "autosave"])
+def test_what_was_saved_or_autosaved_holds_no_mesh(qtbot, opened, tmp_path, way: str) -> None:
+    paint(opened.controller)
+    qtbot.waitUntil(lambda: not opened.controller.missing(), timeout=10_000)
+    meshes = [ref(run.mesh) for run in opened.controller.study.runs.values()]
+    if way == "save":
+        save(qtbot, opened, tmp_path / "kept")
+        assert not opened.files.is_modified
+    else:
+        opened.files.autosave()
+        qtbot.waitUntil(lambda: opened.files._kept() is opened.controller.study, timeout=10_000)
+    paint(opened.controller, 0.5, 0.006)
+    qtbot.waitUntil(lambda: not opened.controller.missing(), timeout=10_000)
+    opened.controller.store.stack.clear()
+    opened.files._timer.stop()
+    qtbot.waitUntil(lambda: not gc.collect() and not any(mesh() for mesh in meshes), timeout=5000)
 
 
 def test_a_painted_study_comes_back_with_strokes_original_and_view(qtbot, opened, tmp_path) -> None:
