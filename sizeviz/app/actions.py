@@ -31,6 +31,8 @@ class Command:
         Keys, empty for none; several alternatives are separated by a blank.
     checkable : bool
         Whether it is a switch.
+    words : str
+        Other words by which the palette finds it.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Command:
     group: str
     shortcut: str = ""
     checkable: bool = False
+    words: str = ""
 
 
 COMMANDS: tuple[Command, ...] = (
@@ -45,11 +48,14 @@ COMMANDS: tuple[Command, ...] = (
     Command("canvas", "New blank canvas", "File", "Ctrl+N"),
     Command("save", "Save the study", "File", "Ctrl+S"),
     Command("save-as", "Save the study as…", "File", "Ctrl+Shift+S"),
-    Command("recover", "Recover the last unsaved study", "File"),
-    Command("save-picture", "Save a picture of this view…", "File", "Ctrl+E"),
-    Command("save-comparison", "Save the comparison picture…", "File", "Ctrl+Shift+E"),
-    Command("save-page", "Save an interactive page for browsers…", "File", "Ctrl+Alt+E"),
-    Command("save-film", "Save a film of a turning α…", "File"),
+    Command("recover", "Recover the last unsaved study", "File", words="autosave crash"),
+    Command("save-picture", "Save a picture of this view…", "File", "Ctrl+E", words="export screenshot PNG SVG PDF"),
+    Command("save-comparison", "Save the comparison picture…", "File", "Ctrl+Shift+E", words="export PNG SVG PDF"),
+    Command("save-page", "Save an interactive page for browsers…", "File", "Ctrl+Alt+E", words="export HTML"),
+    Command("save-film", "Save a film of a turning α…", "File", words="export animation video MP4 GIF"),
+    Command("save-mesh", "Save the mesh of this pane…", "File", "Ctrl+Alt+M", words="export VTU VTK MSH OBJ"),
+    Command("save-prescribed", "Save the prescribed size h…", "File", words="export field painted POS SOL NPZ VTU"),
+    Command("save-target", "Save the target size h* of this pane…", "File", words="export field POS SOL NPZ VTU"),
     Command("copy-command", "Copy as command", "File", "Ctrl+Alt+C"),
     Command("copy-python", "Copy as Python", "File", "Ctrl+Alt+P"),
     Command("quit", "Quit", "File", "Ctrl+Q"),
@@ -84,6 +90,8 @@ COMMANDS: tuple[Command, ...] = (
     Command("worst-quality", "Go to the worst quality", "Inspect", "Q"),
     Command("unpin", "Let go of the pinned element", "Inspect", "P"),
     Command("copy-table", "Copy the table as Markdown", "Inspect", "Ctrl+Shift+C"),
+    Command("copy-table-csv", "Copy the table as CSV", "Inspect"),
+    Command("copy-table-latex", "Copy the table as LaTeX", "Inspect"),
     Command("lesson-line", "Lesson: sizes on a line", "Learn", "F2"),
     Command("lesson-process", "Lesson: the adaptive process", "Learn", "F3"),
     Command("why", "Why is h* this here?", "Learn", "H"),
@@ -93,7 +101,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("shortcuts", "Keyboard shortcuts", "Help", "? Shift+?"),
     Command("theme", "Dark theme", "Help", "Ctrl+D", True),
     Command("log", "Show the log", "Help", ""),
-    Command("about", "About sizeviz", "Help", ""),
+    Command("about", "About sizeviz", "Help", words="versions licence citation"),
 )
 
 

@@ -15,6 +15,7 @@ from qtpy.QtCore import QObject, Signal
 
 from sizeviz.app.brush.live import Painted
 from sizeviz.app.brush.painting import PREVIEW, Painting
+from sizeviz.app.engine import LIMITED, PRESERVED
 from sizeviz.app.inspect.locate import ElementLocator
 from sizeviz.app.jobs import Failure, Job, JobRunner
 from sizeviz.app.news import Displayed, Notice
@@ -89,7 +90,7 @@ class Controller(QObject):
         self.wanted: tuple[str, ...] = ("gradient-limiting", "size-preserving")
         self.automatic = True
         self.painting = Painting(engine, self.store, self.jobs, self)
-        self.painting.lifted.connect(self._after_edit)
+        self.painting.lifted.connect(self._after_stroke)
         self._last_good: dict[str, Subject] = {}
         self._locators: WeakKeyDictionary[QuadMesh, ElementLocator] = WeakKeyDictionary()
         self._last_edit = ("", 0.0, 0)
@@ -120,24 +121,19 @@ class Controller(QObject):
         if study is None:
             return Displayed(Subject(), stale=False)
         subject = subject_of(study, method)
-        stale = False
-        if subject.report is None:
-            last = self._last_good.get(method)
-            if last is not None and last.domain is subject.domain:
-                stale = True
-                subject = replace(
-                    subject,
-                    mesh=last.mesh,
-                    report=last.report,
-                    detail=last.detail,
-                    target=subject.target or last.target,
-                )
+        last = self._last_good.get(method)
+        stale, older = False, None
+        if subject.report is None and last is not None and last.domain is subject.domain:
+            stale, older = True, self.painting.carried(study).get(method, last.target)
+            subject = replace(subject, mesh=last.mesh, report=last.report, detail=last.detail)
         preview = self.painting.preview
-        if preview is not None:
-            target = preview.targets.get(method, subject.target)
-            subject = replace(subject, prescribed=preview.field, target=target)
-            stale = subject.mesh is not None
-        return Displayed(subject, stale)
+        if preview is None:
+            target = subject.target or self.painting.processed(study).get(method)
+            return Displayed(replace(subject, target=target or older), stale, target is None and older is not None)
+        follows = method in preview.targets or (preview.is_live and method in (LIMITED, PRESERVED))
+        target = preview.targets.get(method, subject.target or older)
+        subject = replace(subject, prescribed=preview.field, target=target)
+        return Displayed(subject, subject.mesh is not None, target is not None and not follows)
 
     def missing(self) -> tuple[str, ...]:
         """Return the wanted methods that the current study has no complete run of."""
@@ -283,6 +279,12 @@ class Controller(QObject):
             self.apply()
         else:
             self.jobs.cancel()
+
+    def _after_stroke(self) -> None:
+        """Where no run follows a stroke by itself, its processed fields do all the same."""
+        self._after_edit()
+        if self.missing() and not self.is_cheap():
+            self.painting.process()
 
     def _merge_key(self, key: str) -> str:
         if not key:

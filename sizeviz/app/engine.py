@@ -43,6 +43,11 @@ class Preview:
     field: SizeField
     targets: dict[str, SizeField]
 
+    @property
+    def is_live(self) -> bool:
+        """Whether the field is small enough for its processed fields to follow the brush."""
+        return len(self.field.sizes) <= LIVE_NODES
+
 
 @dataclass(frozen=True, eq=False)
 class Processed:

@@ -14,11 +14,12 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from qtpy.QtWidgets import QDialog, QDialogButtonBox, QFileDialog, QSpinBox, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QDialog, QDialogButtonBox, QSpinBox, QVBoxLayout, QWidget
 
 from sizeviz.app.jobs import Job
 from sizeviz.app.news import Notice
 from sizeviz.app.panels.controls import Form, choice, hint, number
+from sizeviz.app.places import ask_place
 from sizeviz.errors import InputError
 from sizeviz.progress_lines import ENVIRONMENT, parsed_line
 
@@ -120,12 +121,11 @@ class FilmDialog(QDialog):
         )
 
 
-def ask_place(parent: QWidget, title: str, stem: str) -> str:
+def ask_film_place(parent: QWidget, title: str, stem: str) -> str:
     """Return where a film is to be saved, empty if nowhere; MP4 is offered first where it can be written."""
     mp4 = find_spec("imageio_ffmpeg") is not None
     kinds = "Films (*.mp4 *.gif)" if mp4 else "Films (*.gif)"
-    path, _ = QFileDialog.getSaveFileName(parent, title, f"{stem}.{'mp4' if mp4 else 'gif'}", kinds)
-    return str(path)
+    return ask_place(parent, title, f"{stem}.{'mp4' if mp4 else 'gif'}", kinds)
 
 
 def film_study(controller: Controller, content: StudyFile, path: Path, typed: list[str]) -> None:

@@ -30,6 +30,7 @@ from sizeviz.app.files import StudyFiles
 from sizeviz.app.inspect.histogram import HistogramPanel
 from sizeviz.app.inspect.judge import StatisticsPanel, WorstPanel
 from sizeviz.app.inspect.look import Inspector
+from sizeviz.app.menus import FILE, menu_button
 from sizeviz.app.palette import CommandPalette, ShortcutOverlay
 from sizeviz.app.panels.controls import Section
 from sizeviz.app.panels.options import JudgePanel, MeshPanel, SizePanel, SmoothPanel
@@ -58,6 +59,13 @@ SIDEBAR = 306
 
 INSPECTOR = 372
 """Width of the judgement's panels."""
+
+OF_A_STUDY: tuple[str, ...] = (
+    "save", "save-as", "save-picture", "save-comparison", "save-page", "save-film", "save-mesh", "save-prescribed",
+    "save-target", "copy-command", "copy-python", "copy-table", "copy-table-csv", "copy-table-latex", "worst-ratio",
+    "worst-quality",
+)  # fmt: skip
+"""Commands that there is nothing for until something is open."""
 
 
 class Frame(QMainWindow):
@@ -115,6 +123,8 @@ class Frame(QMainWindow):
         self.pages = QStackedWidget()
         self.pages.addWidget(self.welcome)
         self.pages.addWidget(self.board)
+        self.pages.currentChanged.connect(self._suit_pages)
+        self._suit_pages()
         self.setCentralWidget(self.pages)
         self.toast = Toast(self.pages)
 
@@ -158,7 +168,8 @@ class Frame(QMainWindow):
         judge.setChildrenCollapsible(False)
         for panel in (self.statistics, *self.histograms, self.worst):
             judge.addWidget(panel)
-        judge.setSizes([362, 132, 132, 240])
+        judge.setSizes([374, 132, 132, 240])
+        judge.setStretchFactor(3, 1)  # a low window takes rows from the list, not from the table
         self.history = QUndoView(self.controller.store.stack)
         self.history.setEmptyLabel("As opened")
         self.history.setAccessibleName("History")
@@ -184,11 +195,11 @@ class Frame(QMainWindow):
         bar = QToolBar("Tools")
         bar.setObjectName("tools")
         bar.setMovable(False)
-        bar.addAction(self.actions_["open"])
+        bar.addWidget(menu_button("File", "Open, save, export", FILE, self.actions_, self))
         about_panes = []
-        for name in ("undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-2", "panes-3",
-                     "panes-4"):  # fmt: skip
-            if name == "panes-2":
+        for name in ("undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-1", "panes-2",
+                     "panes-3", "panes-4"):  # fmt: skip
+            if name == "panes-1":
                 about_panes.append(bar.addWidget(_quiet("  Panes")))
             if name:
                 bar.addAction(self.actions_[name])
@@ -201,8 +212,8 @@ class Frame(QMainWindow):
 
         self.pages.currentChanged.connect(suit_page)
         suit_page()
-        short = {"open": "Open…", "paint": "Paint", "link": "Link", "shared-range": "Shared range", "swap": "Swap",
-                 "fit": "Fit", "panes-2": "2", "panes-3": "3", "panes-4": "4"}  # fmt: skip
+        short = {"paint": "Paint", "link": "Link", "shared-range": "Shared range", "swap": "Swap", "fit": "Fit",
+                 "panes-1": "1", "panes-2": "2", "panes-3": "3", "panes-4": "4"}  # fmt: skip
         for name, words in short.items():
             self.actions_[name].setIconText(words)
         spacer = QWidget()
@@ -256,6 +267,12 @@ class Frame(QMainWindow):
             self.resizeDocks(docks, [SIDEBAR, INSPECTOR], Qt.Orientation.Horizontal)
         self.pages.setCurrentWidget(self.board)
 
+    def _suit_pages(self) -> None:
+        """Let the window be as small as the page on show can be, however much room the others would want."""
+        for k in range(self.pages.count()):
+            policy = QSizePolicy.Policy.Preferred if k == self.pages.currentIndex() else QSizePolicy.Policy.Ignored
+            self.pages.widget(k).setSizePolicy(policy, policy)
+
     def show_title(self) -> None:
         """Name the study's file, or what it was opened from, and mark unsaved changes."""
         study, path = self.controller.study, self.files.path
@@ -297,7 +314,7 @@ class Frame(QMainWindow):
         missing = len(self.controller.missing())
         self.actions_["apply"].setEnabled(missing > 0 and not busy)
         self.actions_["cancel"].setEnabled(busy)
-        for name in ("save", "save-as", "save-page", "save-film", "copy-command", "copy-python"):
+        for name in OF_A_STUDY:
             self.actions_[name].setEnabled(self.controller.study is not None)
         self.judge_panel.show_state(missing, busy)
 

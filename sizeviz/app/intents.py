@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QApplication, QFileDialog
 
-from sizeviz.app.exports import ask_film, save_page
+from sizeviz.app.exports import ask_film, save_mesh, save_page, save_prescribed, save_target
 from sizeviz.app.feedback import About
 from sizeviz.app.news import Notice
 from sizeviz.app.panes.board import Selection
 from sizeviz.app.panes.remembered import restore_view
+from sizeviz.app.places import ask_place
 from sizeviz.app.qt import QShortcut
 from sizeviz.app.theme import DARK, LIGHT
 
@@ -43,9 +44,11 @@ def connect_panels(window: Frame) -> None:
     for panel in (window.size_panel, window.mesh_panel, window.smooth_panel):
         panel.changed.connect(controller.change)
     judge = window.judge_panel
+    judge.apply_requested.connect(lambda: _keep_keyboard(window))
     judge.apply_requested.connect(controller.apply)
     judge.automatic_toggled.connect(lambda on: setattr(controller, "automatic", on))
     judge.measure_chosen.connect(lambda measure: _set_measure(window, measure))
+    window.progress.cancel_requested.connect(lambda: _keep_keyboard(window))
     window.progress.cancel_requested.connect(controller.cancel)
     controller.study_changed.connect(lambda old, new: _on_study(window, old, new))
     controller.store.stack.indexChanged.connect(lambda index: window.show_state())
@@ -78,6 +81,9 @@ def connect_actions(window: Frame, leave_lesson: Callable[[], bool]) -> None:
     on("save-comparison", lambda: save_comparison(window))
     on("save-page", lambda: save_page(window))
     on("save-film", lambda: ask_film(window))
+    on("save-mesh", lambda: save_mesh(window))
+    on("save-prescribed", lambda: save_prescribed(window))
+    on("save-target", lambda: save_target(window))
     on("quit", window.close)
     on("undo", controller.undo)
     on("redo", controller.redo)
@@ -108,7 +114,8 @@ def connect_actions(window: Frame, leave_lesson: Callable[[], bool]) -> None:
     on("worst-ratio", lambda: window.inspector.go_to_worst("ratio"))
     on("worst-quality", lambda: window.inspector.go_to_worst("quality"))
     on("unpin", lambda: window.inspector.set_pin("", None))
-    on("copy-table", lambda: window.statistics.copy("Markdown"))
+    for name, form in (("copy-table", "Markdown"), ("copy-table-csv", "CSV"), ("copy-table-latex", "LaTeX")):
+        on(name, lambda form=form: window.statistics.copy(form))
     on("palette", window.palette_.open)
     on("shortcuts", window.overlay.open)
     on("theme", lambda dark: window.set_theme(DARK if dark else LIGHT))
@@ -223,10 +230,7 @@ def _saved(window: Frame, path: str, work: Callable[[], object]) -> None:
 
 
 def _ask_picture(window: Frame, name: str) -> str:
-    path, _ = QFileDialog.getSaveFileName(
-        window, "Save a picture", name, "Pictures, vector figures (*.png *.jpg *.tif *.svg *.pdf)"
-    )
-    return str(path)
+    return ask_place(window, "Save a picture", name, "Pictures, vector figures (*.png *.jpg *.tif *.svg *.pdf)")
 
 
 def _connect_keys(window: Frame, leave_lesson: Callable[[], bool]) -> None:
@@ -249,6 +253,12 @@ def _escape(window: Frame, leave_lesson: Callable[[], bool]) -> None:
     else:
         window.toast.hide()
         window.inspector.set_pin("", None)
+
+
+def _keep_keyboard(window: Frame) -> None:
+    """Give the keyboard to the picture before the button that has it goes: or it would go to whatever comes next."""
+    if window.pages.currentWidget() is window.board:
+        window.board.active.surface.glass.setFocus()
 
 
 def _on_study(window: Frame, old: Study | None, new: Study) -> None:

@@ -203,14 +203,35 @@ def test_while_a_stroke_is_drawn_field_and_targets_follow(qtbot, controller) -> 
     assert controller.store.stack.count() == 0 and not controller.displayed("size-preserving").stale
 
 
+def test_where_no_run_follows_a_stroke_its_processed_fields_do(qtbot, controller) -> None:
+    open_ring(qtbot, controller)
+    controller.automatic = False
+    stroke(controller, [(0.5, 0.5)], Brush(radius=0.2, value=0.001))
+    assert controller.missing()
+    qtbot.waitUntil(lambda: not controller.displayed("size-preserving").is_stale("target"), timeout=3000)
+    shown = controller.displayed("size-preserving")
+    assert shown.subject.target.sizes.min() == pytest.approx(0.0007) and shown.is_stale("ratio")
+    assert controller.displayed("gradient-limiting").subject.target.sizes.min() == pytest.approx(0.00095)
+
+
+def test_a_processed_field_that_is_older_than_the_study_is_called_stale(qtbot, controller) -> None:
+    open_ring(qtbot, controller)
+    controller.automatic = False
+    controller.change(with_alpha(3.0), "α = 3")
+    shown = controller.displayed("size-preserving")
+    assert shown.is_stale("target") and shown.subject.target is not None and not shown.is_stale("prescribed")
+
+
 def test_a_large_field_is_painted_without_the_processed_fields(qtbot, controller, engine, monkeypatch) -> None:
-    monkeypatch.setattr("sizeviz.app.brush.painting.LIVE_NODES", 100)
+    monkeypatch.setattr("sizeviz.app.engine.LIVE_NODES", 100)
     open_ring(qtbot, controller)
     engine.calls.clear()
     controller.painting.begin(Brush(radius=0.2, value=0.001), "freehand", 0.5, 0.5)
     qtbot.wait(60)
     assert engine.calls == [] and controller.painting.preview is not None
+    assert controller.displayed("size-preserving").is_stale("target")
     controller.painting.abort()
+    assert not controller.displayed("size-preserving").is_stale("target")
 
 
 def test_a_stroke_beside_the_field_is_no_step(qtbot, controller) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from app.driver import Person
 from app.fakes import fake_source
-from qtpy.QtCore import Qt
+from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication
 
 from sizeviz.app.news import Notice
@@ -61,10 +61,77 @@ def test_the_table_keeps_the_last_numbers_and_calls_them_stale(qtbot, opened) ->
     after = opened.statistics.model.table
     assert after.header == ("", "Gradient limiting", "Size preserving (stale)")
     assert after.rows[:-1] == before.rows[:-1]  # all but the seconds, which are of a run that is gone
-    assert opened.statistics.model.headerData(2, Qt.Orientation.Horizontal) == "Size\npreserving (stale)"
+    assert opened.statistics.model.headerData(2, Qt.Orientation.Horizontal) == "Size\npreserving\n(stale)"
+    assert all(head_fits(opened.statistics.view, column) for column in (1, 2))
     with qtbot.waitSignal(opened.controller.settled, timeout=5000):
         opened.controller.apply()
     assert "stale" not in "".join(opened.statistics.model.table.header)
+
+
+def test_a_click_on_a_verdict_goes_to_the_worst_element_of_its_pane(qtbot, opened) -> None:
+    second = opened.board.panes[1]
+    second.set_view(second.view.with_changes(color_by="quality"))
+    qtbot.mouseClick(second.verdict, Qt.MouseButton.LeftButton)
+    assert opened.board.active is second
+    assert opened.inspector.pin == ("size-preserving", int(second.subject.report.quality.argmin()))
+    second.set_view(second.view.with_changes(color_by="target"))
+    opened.inspector.set_pin("", None)
+    qtbot.mouseClick(second.verdict, Qt.MouseButton.LeftButton)
+    assert opened.inspector.pin is None
+
+
+def test_histograms_name_the_method_whose_elements_they_count(opened) -> None:
+    for pane, words in zip(opened.board.visible_panes, ("gradient limiting", "size preserving"), strict=True):
+        opened.board.set_active(pane)
+        Person(opened).wait(lambda: not opened.is_settling)
+        assert [histogram.count.text() for histogram in opened.histograms] == [words, words]
+
+
+def test_the_window_fits_a_small_screen_whatever_it_shows(opened) -> None:
+    for name in ("panes-2", "panes-4", "lesson-line"):
+        opened.actions_[name].trigger()
+        opened.resize(1024, 700)
+        QApplication.processEvents()
+        assert (opened.width(), opened.height()) == (1024, 700), name
+
+
+def test_the_table_shows_all_its_rows(opened) -> None:
+    view = opened.statistics.view
+    assert view.verticalScrollBar().maximum() == 0 and view.horizontalScrollBar().maximum() == 0
+
+
+def head_fits(view, column: int) -> bool:
+    """Return whether a column's head is shown whole."""
+    header = view.horizontalHeader()
+    words = view.model().headerData(column, Qt.Orientation.Horizontal)
+    room = header.fontMetrics().boundingRect(0, 0, 999, 999, 0, words)
+    return header.sectionSize(column) >= room.width() + 12 and header.height() >= room.height()
+
+
+def test_what_is_under_a_resting_cursor_is_told_again_when_the_picture_moves(qtbot, opened) -> None:
+    first, second = opened.board.visible_panes
+    spot = Person(opened).spot(second, 0.5, 0.5)
+    qtbot.mouseMove(second.surface.glass, spot + QPoint(30, 30))
+    qtbot.mouseMove(second.surface.glass, spot)
+    before = opened.readout.text()
+    opened.inspector.go_to(first.view.method, 0)  # the other pane is linked
+    glass, camera = second.surface.glass, second.surface.camera
+    x, y = camera.to_model(spot.x(), spot.y(), glass.width(), glass.height())
+    assert "element" in before and opened.readout.text().startswith(f"   x {x:.5g}   y {y:.5g}")
+
+
+def test_what_is_under_a_resting_cursor_is_told_again_when_a_run_ends(qtbot, opened) -> None:
+    pane = opened.board.active
+    spot = Person(opened).spot(pane, 0.5, 0.5)
+    qtbot.mouseMove(pane.surface.glass, spot + QPoint(30, 30))
+    qtbot.mouseMove(pane.surface.glass, spot)
+    before = opened.readout.text()
+    with qtbot.waitSignal(opened.controller.settled, timeout=5000):
+        opened.controller.change(
+            lambda o: replace(o, preserve=replace(o.preserve, alpha=3.0)).with_comparable_slope(), "α = 3"
+        )
+    Person(opened).wait(lambda: not opened.is_settling)
+    assert "R " in before and opened.readout.text() != before
 
 
 def test_menus_of_a_pane_are_seen_whole_or_above_each_other(opened) -> None:

@@ -6,12 +6,17 @@ import subprocess
 import sys
 import types
 
+import numpy as np
 import pytest
+import pyvista
 from app.test_process_player import pretend
 from PIL import Image
+from qtpy.QtWidgets import QFileDialog
 
 from sizeviz.app import exports, films
 from sizeviz.app.films import FilmDialog, Turn
+from sizeviz.app.places import ask_place
+from sizeviz.files import read_field
 from sizeviz.progress_lines import LineMonitor, parsed_line
 
 pytestmark = pytest.mark.display
@@ -30,6 +35,57 @@ def test_a_page_that_cannot_be_written_is_an_error_and_the_window_lives(qtbot, o
     with qtbot.waitSignal(opened.controller.jobs.failed, timeout=20_000):
         exports.save_page(opened, str(tmp_path / "nowhere" / "p.html"))
     assert "the folder does not exist" in opened.toast.text.text()
+
+
+def test_the_mesh_of_the_active_pane_is_saved_with_its_judgement(qtbot, opened, tmp_path) -> None:
+    opened.board.set_active(opened.board.panes[1])
+    with qtbot.waitSignal(opened.controller.jobs.completed, timeout=20_000):
+        exports.save_mesh(opened, str(tmp_path / "m.vtu"))
+    report = opened.controller.study.runs["size-preserving"].report
+    held = pyvista.read(tmp_path / "m.vtu")
+    np.testing.assert_allclose(held.cell_data["ratio"], report.ratios["mean-edge"])
+    assert set(held.point_data.keys()) >= {"size_prescribed", "size_target"}
+    assert "Saved m.vtu" in opened.toast.text.text()
+
+
+def test_fields_are_saved_as_given_and_as_processed(qtbot, opened, tmp_path) -> None:
+    study = opened.controller.study
+    for save, field in (
+        (exports.save_prescribed, study.source.field),
+        (exports.save_target, study.runs["gradient-limiting"].target),
+    ):
+        with qtbot.waitSignal(opened.controller.jobs.completed, timeout=20_000):
+            save(opened, str(tmp_path / "f.npz"))
+        np.testing.assert_allclose(read_field(tmp_path / "f.npz").sizes, field.sizes)
+
+
+def test_what_is_older_than_the_study_is_not_saved_and_what_to_do_is_said(opened, tmp_path) -> None:
+    opened.controller.automatic = False
+    opened.size_panel.alpha.spin.setValue(3.0)
+    for save in (exports.save_mesh, exports.save_target):
+        opened.toast.hide()
+        save(opened, str(tmp_path / "old.vtu"))
+        assert "press Apply (F5)" in opened.toast.text.text() and opened.toast.isVisible()
+    assert not (tmp_path / "old.vtu").exists()
+
+
+def test_saving_breaks_no_run_off(qtbot, opened, engine, tmp_path) -> None:
+    engine.seconds = 20.0
+    opened.size_panel.alpha.spin.setValue(3.0)
+    qtbot.waitUntil(lambda: opened.controller.is_running)
+    running = opened.controller.jobs.running
+    exports.save_page(opened, str(tmp_path / "p.html"))
+    exports.save_film(opened, Turn(), str(tmp_path / "a.gif"))
+    assert opened.controller.jobs.running is running and not running.monitor.is_cancelled
+    assert "wait for its end" in opened.toast.text.text()
+    opened.controller.cancel()
+
+
+def test_a_place_without_suffix_gets_the_one_that_was_offered(monkeypatch) -> None:
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *given: ("/there/mesh", ""))
+    assert ask_place(None, "Save", "ring.vtu", "Meshes (*.vtu)") == "/there/mesh.vtu"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *given: ("", ""))
+    assert ask_place(None, "Save", "ring.vtu", "Meshes (*.vtu)") == ""
 
 
 @pytest.mark.gl
@@ -71,7 +127,7 @@ def test_iterations_become_a_film_from_the_player(qtbot, flat_window, tmp_path, 
     jobs = flat_window.controller.jobs
     with qtbot.waitSignal(jobs.idle, timeout=20_000):
         page.open_folder(tmp_path / "p")
-    monkeypatch.setattr(exports, "ask_place", lambda *_: str(tmp_path / "i.gif"))
+    monkeypatch.setattr(exports, "ask_film_place", lambda *_: str(tmp_path / "i.gif"))
     with qtbot.waitSignal(jobs.completed, timeout=200_000):
         page.film_button.click()
     with Image.open(tmp_path / "i.gif") as film:

@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 from qtpy.QtCore import QObject, QTimer, Signal
 
 from sizeviz.app.brush.live import LiveStroke, Painted, covers_nothing, stroke_words
-from sizeviz.app.engine import LIMITED, LIVE_NODES, PRESERVED, Engine, Preview, Processed, with_field
+from sizeviz.app.engine import LIMITED, PRESERVED, Engine, Preview, Processed, with_field
 from sizeviz.app.jobs import Job
 
 if TYPE_CHECKING:
@@ -56,6 +56,7 @@ class Painting(QObject):
         self._painted: WeakKeyDictionary[Source, Painted] = WeakKeyDictionary()
         self._preview_due = False
         self._processed: Processed | None = None
+        self._carried: Preview | None = None
 
     def painted(self, source: Source) -> Painted:
         """Return how a source was painted, so far as it was."""
@@ -64,6 +65,23 @@ class Painting(QObject):
     def remember(self, source: Source, painted: Painted) -> None:
         """Take over how a source was painted, as from a file."""
         self._painted[source] = painted
+
+    def processed(self, study: Study) -> dict[str, SizeField]:
+        """Return the limited and preserved fields of a study, by method, so far as the brush has had them made."""
+        known = self._processed
+        if known is None or known.field is not study.source.field or known.options != study.options:
+            return {}
+        return dict(known.targets)
+
+    def carried(self, study: Study) -> dict[str, SizeField]:
+        """Return what the last stroke's preview showed of the field that it became: a few stamps behind it at most."""
+        return self._carried.targets if self._carried and self._carried.field is study.source.field else {}
+
+    def process(self) -> None:
+        """Have the processed fields of the study itself made: they must not fall back when the brush is lifted."""
+        study = self._store.study
+        if study is not None and self.stroke is None and Preview(study.source.field, {}).is_live:
+            self._ask(study.source.field, study)
 
     def begin(self, brush: Brush, shape: StrokeShape, x: float, y: float) -> None:
         """Put the brush down."""
@@ -91,6 +109,7 @@ class Painting(QObject):
         study, live, self.stroke = self._store.study, self.stroke, None
         if study is None or live is None:
             return
+        targets = {} if self.preview is None else self.preview.targets
         self.preview = None
         if covers_nothing(live.stroke, live.base):
             self.changed.emit()
@@ -98,6 +117,8 @@ class Painting(QObject):
         painted = self.painted(study.source).with_stroke(live.stroke)
         source = with_field(study.source, live.field, len(painted.strokes))
         self._painted[source] = painted
+        self._carried = Preview(source.field, targets)
+        self._preview_due = False
         self._store.commit(study.with_source(source), f"Paint: {stroke_words(live.brush)}")
         self.changed.emit()
         self.lifted.emit()
@@ -115,7 +136,7 @@ class Painting(QObject):
         targets = self.preview.targets if self.preview is not None else {}
         self.preview = Preview(self.stroke.field, targets)
         self.changed.emit()
-        if len(self.preview.field.sizes) <= LIVE_NODES:
+        if self.preview.is_live:
             self._request_preview()
 
     def _request_preview(self) -> None:
@@ -128,16 +149,18 @@ class Painting(QObject):
         preview, study = self.preview, self._store.study
         if preview is None or study is None:
             return
-        field, options, since = preview.field, study.options, self._since(study)
+        self._ask(preview.field, study)
+
+    def _ask(self, field: SizeField, study: Study) -> None:
+        options, since = study.options, self._since(study)
 
         def show(targets: dict[str, SizeField]) -> None:
             self._processed = Processed(field, options, targets)
-            if self.stroke is None or self.preview is None:
-                return
-            self.preview = Preview(self.preview.field, targets)
+            if self.stroke is not None and self.preview is not None:
+                self.preview = Preview(self.preview.field, targets)
+                if self._preview_due:
+                    QTimer.singleShot(0, self._request_preview)
             self.changed.emit()
-            if self._preview_due:
-                QTimer.singleShot(0, self._request_preview)
 
         self._jobs.submit(Job(PREVIEW, lambda monitor: self._engine.targets(field, options, since, monitor), show))
 

@@ -10,6 +10,7 @@ from qtpy.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidge
 
 from sizeviz.scene.compose import scale_for
 from sizeviz.scene.scale import CORRECT
+from sizeviz.scene.subject import METHOD_TITLES
 from sizeviz.scene.view import QUANTITIES, ViewState
 
 if TYPE_CHECKING:
@@ -59,9 +60,11 @@ class HistogramPanel(QWidget):
         self.clear_button = QPushButton("Select a range")
         self.clear_button.setCheckable(True)
         self.clear_button.setAccessibleName(f"Select elements by {QUANTITIES[quantity].lower()}")
+        self.clear_button.setToolTip("Drag the ends of a range: the elements within it are outlined in the panes")
         self.clear_button.toggled.connect(self._toggle)
         self.plot = pyqtgraph.PlotWidget(background=None)
         self.plot.setAccessibleName(f"Histogram of {QUANTITIES[quantity].lower()}")
+        self.plot.setToolTip("Elements by value; heights grow with the square root of the count, so that few are seen")
         self.plot.setMouseEnabled(False, False)
         self.plot.setMenuEnabled(False)
         self.plot.hideButtons()
@@ -101,7 +104,7 @@ class HistogramPanel(QWidget):
         if self._bars is not None:
             self.plot.removeItem(self._bars)
             self._bars = None
-        self.count.setText("")
+        self._name_method()
         if self._values is None or not len(self._values):
             return
         edges, heights = bins(self._values, self.quantity)
@@ -134,11 +137,14 @@ class HistogramPanel(QWidget):
         self.range.setVisible(on)
         self._select()
 
+    def _name_method(self) -> None:
+        self.count.setText("" if self._values is None else METHOD_TITLES.get(self._method, self._method).lower())
+
     def _select(self) -> None:
         if not self._telling:
             return
         if not self.range.isVisible() or self._values is None:
-            self.count.setText("")
+            self._name_method()
             if self._has_selected:
                 self._has_selected = False
                 self.selected.emit(self._method, None)

@@ -68,7 +68,7 @@ class GridModel(QAbstractTableModel):
         """Return a column's head."""
         if orientation == Qt.Orientation.Horizontal and section < len(self.table.header):
             if role == Qt.ItemDataRole.DisplayRole:
-                return self.table.header[section].replace(" ", "\n", 1)
+                return self.table.header[section].replace(" (", "\n(").replace(" ", "\n", 1)
             if role == Qt.ItemDataRole.TextAlignmentRole and section > 0:
                 return Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         return None
@@ -94,6 +94,7 @@ class StatisticsPanel(QWidget):
         for name in FORMATS:
             button = QPushButton(name)
             button.setAccessibleName(f"Copy the table as {name}")
+            button.setToolTip(f"Copy the table as {name}, to paste it elsewhere")
             button.clicked.connect(lambda checked=False, name=name: self.copy(name))
             self.buttons[name] = button
             row.addWidget(button, 1)
@@ -209,7 +210,7 @@ def _table_view(model: GridModel, name: str) -> QTableView:
     view.setModel(model)
     view.setAccessibleName(name)
     view.verticalHeader().hide()
-    view.verticalHeader().setDefaultSectionSize(22)
+    view.verticalHeader().setDefaultSectionSize(20)
     view.setShowGrid(False)
     view.setAlternatingRowColors(True)
     view.setWordWrap(False)

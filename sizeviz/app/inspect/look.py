@@ -45,6 +45,8 @@ class Inspector(QObject):
         board.hovered.connect(self._hover)
         board.left.connect(self._leave)
         board.clicked.connect(self._click)
+        board.shown.connect(self._look_again)
+        board.worst_requested.connect(self.go_to_worst)
         worst.chosen.connect(self.go_to)
         controller.study_changed.connect(lambda old, new: self._after_change())
         controller.painting.changed.connect(self._read_again)
@@ -89,6 +91,12 @@ class Inspector(QObject):
         else:
             glass.marks["hover"] = Mark(mesh.points[mesh.quads[seen.element]])
         glass.update()
+
+    def _look_again(self, pane: Pane) -> None:
+        """Tell of what a pane shows now, whether or not the mouse moves."""
+        if self._under is not None and self._under[0] is pane:
+            self._hover(*self._under)
+        self._draw_pin()
 
     def _read_again(self) -> None:
         """Tell what the brush has changed under it."""

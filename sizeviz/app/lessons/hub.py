@@ -6,13 +6,13 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QObject
-from qtpy.QtWidgets import QMenu, QToolButton
 
 from sizeviz.app.exports import save_process_film
 from sizeviz.app.lessons.in_panes import PaneLessons
 from sizeviz.app.lessons.line_page import LineController, LinePage
 from sizeviz.app.lessons.process import ProcessController
 from sizeviz.app.lessons.process_page import ProcessPage
+from sizeviz.app.menus import LEARN, menu_button
 from sizeviz.app.theme import apply_theme
 
 if TYPE_CHECKING:
@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
 PRESENTER_SCALE = 1.5
 """How much larger words are in presenter mode."""
-
-LEARN: tuple[str, ...] = ("lesson-line", "lesson-process", "why", "explain")
-"""Commands in the menu Learn, in order."""
 
 
 class Lessons(QObject):
@@ -173,15 +170,5 @@ class Lessons(QObject):
 
     def _add_menu(self) -> None:
         window = self._window
-        self.menu = QMenu(window)
-        for name in LEARN:
-            self.menu.addAction(window.actions_[name])
-        self.menu.addSeparator()
-        self.menu.addAction(window.actions_["presenter"])
-        button = QToolButton()
-        button.setText("Learn")
-        button.setAccessibleName("Lessons and explanations")
-        button.setMenu(self.menu)
-        button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        button = menu_button("Learn", "Lessons and explanations", LEARN, window.actions_, window)
         window.toolbar.insertWidget(window.actions_["theme"], button)
-        self.button = button

@@ -29,7 +29,7 @@ from sizeviz.app.qt import painting
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from qtpy.QtGui import QPaintEvent, QResizeEvent
+    from qtpy.QtGui import QMouseEvent, QPaintEvent, QResizeEvent
 
 SLIDER_STEPS = 400
 
@@ -175,6 +175,8 @@ class VerdictLabel(QLabel):
     Whether there are two depends on the width alone, so that panes of one width stay aligned whatever they say.
     """
 
+    clicked = Signal()
+
     LONGEST = "✗  99.9990 % correct, worst R = 1.0001 at element 1000000"
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -183,6 +185,11 @@ class VerdictLabel(QLabel):
         self.setWordWrap(True)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """Tell of a click."""
+        if event.button() == Qt.MouseButton.LeftButton and self.rect().contains(event.pos()):
+            self.clicked.emit()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Take as many lines as the width asks for."""
@@ -199,7 +206,7 @@ class VerdictLabel(QLabel):
         font = self.font()
         font.setBold(True)
         metrics = QFontMetrics(font)
-        lines = min(-(-metrics.horizontalAdvance(self.LONGEST) // max(self.width(), 1)), 3)
+        lines = min(-(-metrics.horizontalAdvance(self.LONGEST) // max(self.width(), 1)), 4)
         self.setFixedHeight(lines * metrics.lineSpacing() + 3)
 
 
@@ -209,7 +216,7 @@ class Menu(QComboBox):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
-        self.setMinimumWidth(84)
+        self.setMinimumWidth(60)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:

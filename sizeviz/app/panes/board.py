@@ -10,7 +10,7 @@ import numpy as np
 from qtpy.QtCore import Signal
 from qtpy.QtWidgets import QGridLayout, QWidget
 
-from sizeviz.app.panes.pane import EDGE_PIXELS, Pane
+from sizeviz.app.panes.pane import EDGE_PIXELS, WORST_KEYS, Pane
 from sizeviz.app.turns import Turns
 from sizeviz.scene.compose import scale_for, values_of
 from sizeviz.scene.view import FIELD_QUANTITIES, ViewState
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from sizeviz.app.panes.surface import Surface
     from sizeviz.scene.camera import Camera2D
     from sizeviz.scene.scale import ColorScale
+    from sizeviz.scene.spec import SceneSpec
+    from sizeviz.scene.subject import Subject
 
 FIRST_VIEWS: tuple[ViewState, ...] = (
     ViewState(method="gradient-limiting"),
@@ -70,6 +72,8 @@ class PaneBoard(QWidget):
     views_changed = Signal()
     active_changed = Signal(object)
     pane_made = Signal(object)
+    shown = Signal(object)
+    worst_requested = Signal(object)
 
     def __init__(
         self, controller: Controller, make_canvas: Callable[[QWidget], Canvas], parent: QWidget | None = None
@@ -228,6 +232,7 @@ class PaneBoard(QWidget):
             pane.set_view(pane.view.with_changes(measure=measure), tell=False)
         pane.activated.connect(lambda: self.set_active(pane))
         pane.view_changed.connect(lambda view: self._on_view(pane))
+        pane.verdict.clicked.connect(lambda: self._ask_worst(pane))
         pane.surface.camera_changed.connect(lambda camera: self._follow(pane, camera))
         pane.surface.hovered.connect(lambda x, y: self.hovered.emit(pane, x, y))
         pane.surface.left.connect(self.left)
@@ -248,7 +253,17 @@ class PaneBoard(QWidget):
             chosen = self.selection.elements
         subject = displayed.subject
         spec = pane.composed(subject, dark=self.dark, scale=self._shared_scale(pane, shown), selected=chosen)
-        self.turns.take({(pane, "show"): partial(pane.show_scene, subject, spec, displayed.stale)})
+        stale = displayed.is_stale(pane.view.color_by)
+        self.turns.take({(pane, "show"): partial(self._show, pane, subject, spec, stale)})
+
+    def _show(self, pane: Pane, subject: Subject, spec: SceneSpec, stale: bool) -> None:
+        pane.show_scene(subject, spec, stale)
+        self.shown.emit(pane)
+
+    def _ask_worst(self, pane: Pane) -> None:
+        self.set_active(pane)
+        if pane.view.color_by in WORST_KEYS:
+            self.worst_requested.emit(pane.view.color_by)
 
     def _on_view(self, pane: Pane) -> None:
         self.views_changed.emit()

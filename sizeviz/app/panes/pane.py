@@ -12,7 +12,7 @@ from sizeviz.app.panes.colorbar import ColorBar, ColorBarEditor
 from sizeviz.app.panes.surface import Surface
 from sizeviz.scene.compose import compose
 from sizeviz.scene.subject import METHOD_TITLES, Subject
-from sizeviz.scene.view import FIELD_QUANTITIES, QUANTITIES, ViewState
+from sizeviz.scene.view import QUANTITIES, ViewState
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 EDGE_PIXELS = 7.0
 """Element edges are drawn once elements in view are wider than this."""
+
+WORST_KEYS = {"ratio": "W", "quality": "Q"}
+"""Quantities that have a worst element, each with the key that goes there."""
 
 OFFERED = tuple(METHOD_TITLES)
 """Methods that a pane can be set to."""
@@ -115,8 +118,7 @@ class Pane(QFrame):
         self.detail.setToolTip(spec.detail)
         self.method.setToolTip(f"{spec.title}: {spec.detail}")
         self._say(spec)
-        about_mesh = self.view.color_by not in FIELD_QUANTITIES
-        self.badge.setVisible(stale and about_mesh and spec.scale is not None)
+        self.badge.setVisible(stale and spec.scale is not None)
 
     def forget(self) -> None:
         """Keep nothing of what was shown: a pane that nobody sees must not hold the memory of a mesh."""
@@ -232,7 +234,9 @@ class Pane(QFrame):
     def _say(self, spec: SceneSpec) -> None:
         sign = {True: "✓  ", False: "✗  ", None: ""}[spec.passed]
         self.verdict.setText(sign + spec.verdict)
-        self.verdict.setToolTip(spec.verdict)
+        worst = WORST_KEYS.get(self.view.color_by) if spec.scale is not None else None
+        self.verdict.setToolTip(spec.verdict if worst is None else f"Go to the worst element ({worst})")
+        self.verdict.setCursor(Qt.CursorShape.ArrowCursor if worst is None else Qt.CursorShape.PointingHandCursor)
         role = {True: "good", False: "bad", None: ""}[spec.passed]
         if self.verdict.property("role") != role:
             self.verdict.setProperty("role", role)

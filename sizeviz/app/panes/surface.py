@@ -17,13 +17,16 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
-    from qtpy.QtGui import QMouseEvent, QPaintEvent, QResizeEvent, QWheelEvent
+    from qtpy.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPaintEvent, QResizeEvent, QWheelEvent
 
     from sizeviz.app.panes.canvas import Canvas
     from sizeviz.scene.spec import Bounds
 
 WHEEL_STEP = 1.2
 """Zoom of one notch of the wheel."""
+
+ARROW_SHARE = 0.1
+"""Which part of a pane's height an arrow key pans by."""
 
 CLICK_SLOP = 4.0
 """A press that moves less than this, in pixels, is a click."""
@@ -65,12 +68,14 @@ class Glass(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
         self.setAttribute(Qt.WidgetAttribute.WA_TranslucentBackground)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName("Picture")
         self.ring: Ring | None = None
         self.marks: dict[str, Mark] = {}
         self.path: list[tuple[float, float]] = []
         self.overlay: Overlay | None = None
         self._pressed: QPointF | None = None
         self._last = QPointF()
+        self._cursor: QPointF | None = None
         self._panning = False
         self._drawing = False
 
@@ -90,15 +95,16 @@ class Glass(QWidget):
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Pan, draw or hover."""
-        at = _position(event)
+        self._cursor = at = _position(event)
         if self._panning and self._pressed is not None:
             delta, self._last = at - self._last, at
             if _length(at - self._pressed) > CLICK_SLOP:
                 self.setCursor(Qt.CursorShape.ClosedHandCursor)
             self._surface.move_camera(self._surface.camera.panned(delta.x(), delta.y(), self.height()))
-        elif self._drawing:
+            return  # which has told of the place under the cursor
+        if self._drawing:
             self._surface.stroke_moved.emit(*self._model(at))
-        self._surface.hovered.emit(*self._model(at))
+        self.hover_again()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End what the press began; a press that did not move is a click."""
@@ -135,8 +141,32 @@ class Glass(QWidget):
             self._surface.move_camera(self._surface.camera.zoomed(WHEEL_STEP**notches, x, y))
         event.accept()
 
+    def hover_again(self) -> None:
+        """Tell what is under the cursor now: the picture may have moved while the mouse rested."""
+        if self._cursor is not None:
+            self._surface.hovered.emit(*self._model(self._cursor))
+
+    # -- the keyboard ----------------------------------------------------------------------------------------------
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        """Make the pane the active one when the keyboard comes to it."""
+        super().focusInEvent(event)
+        if event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason):
+            self._surface.activated.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Pan with the arrow keys."""
+        arrows = {Qt.Key.Key_Left: (1, 0), Qt.Key.Key_Right: (-1, 0), Qt.Key.Key_Up: (0, 1), Qt.Key.Key_Down: (0, -1)}
+        if event.key() not in arrows:
+            super().keyPressEvent(event)
+            return
+        across, down = arrows[event.key()]
+        step = ARROW_SHARE * self.height()
+        self._surface.move_camera(self._surface.camera.panned(across * step, down * step, self.height()))
+
     def leaveEvent(self, event: object) -> None:
         """Forget the hover."""
+        self._cursor = None
         self._surface.left.emit()
 
     # -- drawing ---------------------------------------------------------------------------------------------------
@@ -239,7 +269,7 @@ class Surface(QWidget):
         self.tool_active = False
         self._bounds: Bounds = (0.0, 0.0, 1.0, 1.0)
         self._fitted = True
-        self.setMinimumSize(160, 140)
+        self.setMinimumSize(150, 66)
         policy = self.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self.setSizePolicy(policy)
@@ -275,6 +305,7 @@ class Surface(QWidget):
         self._fitted = False
         self.camera = camera
         self.canvas.look(camera)
+        self.glass.hover_again()
         self.glass.update()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
