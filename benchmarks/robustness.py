@@ -151,7 +151,7 @@ def warm_up() -> None:
             "points", rng, domain, ratio=10.0, most=500, options=options, background=background
         )
         for mode in MODES:
-            meshed(mode, domain, field, target, 0.9, 0, 1, LIMIT)
+            meshed(mode, domain, field, target, 0.9, 0, 1, np.inf)
 
 
 def read(path: Path) -> dict[tuple[int, str], Outcome]:

@@ -66,7 +66,7 @@ class Workspace:
         self.domain, self.size, self.options = domain, size, options
         self.objective = OBJECTIVES[options.objective]
         self.weight = 0.0
-        self.curves = _curve_arrays(domain)
+        self.curves = curve_arrays(domain)
         self.scale = 1.0
         self._adopt(mesh)
 
@@ -211,7 +211,7 @@ def longer(array: NDArray[Any], more: int, value: float) -> NDArray[Any]:
     return np.concatenate([array, np.full(more, value, dtype=array.dtype)])
 
 
-def _curve_arrays(domain: Domain) -> tuple[Any, ...]:
+def curve_arrays(domain: Domain) -> tuple[Any, ...]:
     """Return the curves of a domain as the arrays that ``_curve_kernels`` names."""
     closed = [np.vstack([c.points, c.points[:1]]) if c.closed else c.points for c in domain.curves]
     start = np.concatenate([[0], np.cumsum([len(points) for points in closed])]).astype(np.int64)

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sizeviz.improvement import _cleanup_kernels, _curve_kernels, _mesh_kernels
+from sizeviz.improvement import _cleanup_kernels, _mesh_kernels
 from sizeviz.improvement._candidate_kernels import MOST_CANDIDATES
 from sizeviz.improvement._cavity_kernels import MOST_CORE, MOST_ELEMENTS
 from sizeviz.improvement._operation_kernels import DEGENERATE
 from sizeviz.improvement._star_kernels import star_size
 from sizeviz.improvement._workspace import Workspace, longer
+from sizeviz.improvement.lines import line_pairs
 from sizeviz.improvement.options import SmoothOptions
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.threads import run_chunks
@@ -49,8 +50,6 @@ MOST_VISITS, FEW_VISITS = 12, 5
 """How often one node is taken from the queue in one pass, so that a pass ends; the second where losses are allowed."""
 LOSS = 0.45
 """Distortion that an operation may cost which changes no valence energy, but moves a pair of irregular nodes."""
-ON_LINE = 1e-9
-"""Distance from an inner line, over the mesh's width, up to which a fixed node lies on it."""
 BUDGET = 1024
 """Nodes visited between two looks at the monitor."""
 
@@ -192,21 +191,9 @@ def _links(work: Workspace) -> NDArray[np.int32]:
 
     Clean-up neither moves a node off its line nor takes one away, so these edges stay what they are.
     """
-    pairs = [np.empty((0, 2), dtype=np.int64)]
-    width = float(np.ptp(work.xy[work.count > 0], axis=0).max())
-    for c, curve in enumerate(work.domain.curves):
-        if not curve.inner:
-            continue
-        nodes = np.flatnonzero((work.curve == c) | work.fixed)  # lines may begin, end and meet at fixed nodes
-        station, off = np.zeros(len(work.xy)), np.zeros(len(work.xy))
-        of = np.full(len(work.xy), c, dtype=np.int32)
-        _curve_kernels.project_nodes(work.curves, nodes, of, work.xy, station, off)
-        on = nodes[off[nodes] <= (ON_LINE * width) ** 2]
-        on = on[np.argsort(station[on], kind="stable")]
-        pairs.append(np.column_stack([on[:-1], on[1:]]))
-        if curve.closed or np.array_equal(curve.points[0], curve.points[-1]):
-            pairs.append(np.column_stack([on[-1:], on[:1]]))
-    one, other = np.vstack([*pairs, *(pair[:, ::-1] for pair in pairs)]).T
+    alive = work.xy[work.count > 0]
+    pairs = line_pairs(work.domain, work.xy, work.curve, work.fixed, float(np.ptp(alive, axis=0).max()))
+    one, other = np.vstack([pairs, pairs[:, ::-1]]).T
     order = np.argsort(one, kind="stable")
     one, other = one[order], other[order]
     place = np.arange(len(one)) - np.searchsorted(one, one)

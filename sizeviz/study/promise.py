@@ -2,7 +2,8 @@
 
 What moves and operations can repair depends on the room that the mesh leaves. Where sizes change very fast, or a domain
 is hardly wider than its elements, too few are left to work with. The tight field is then lowered around the elements
-that are left, which costs few elements more, and all is meshed again.
+that are left, which costs few elements more, and meshed again: first just the patch around them, and where that does not
+help, or they are all over the mesh, everything.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from sizeviz.improvement import GuaranteeOptions, GuaranteeReport, guaranteed
 from sizeviz.meshing import MeshOptions, generated
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sizing.lowered import lowered
+from sizeviz.study.patches import patches_around, repatched
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +33,7 @@ SHARE, LEAST_SHARE, MOST_SHARE = 0.92, 0.6, 0.88
 """By how much: the first over the element's R, within the other two."""
 SPARED = 0.75
 """Share of the least size over an element, to the power of the attempt, below which none is lowered."""
-LARGEST = 1.5
+LONGEST = 1.5
 """R above which an element's edge no longer tells how far to reach."""
 POOR, POOR_SHARE, POOR_REACH = 0.6, 0.8, 1.5
 """Shape quality from which down sizes are lowered although R <= 1; by how much, and how far around."""
@@ -39,8 +41,14 @@ SHARP = np.deg2rad(38.0)
 """Angle between two lines below which the element between them is poor whatever its mesh; it has at most its sine."""
 BETTER, DEARER, FEW = 3, 1.15, 100
 """How often this is tried, and what it may cost in elements: times their number, or so many."""
+MANY, MUCH_DEARER = 0.05, 1.25
+"""The same where this share of the elements or more is poor."""
 FAR, FAR_SHARE = 0.5, 0.8
 """Share of wrong elements from which nearly all of a mesh is lowered at once, where spots overlap; by how much then."""
+PATCHED = 0.8
+"""Share of a mesh up to which patches are made anew by themselves."""
+LARGEST = 1_000_000
+"""Elements from which a mesh is not made again as a whole where patches would do, however often they fail."""
 HOPELESS = 0.1
 """Share of wrong elements from which a mesh that is not the last is not repaired."""
 
@@ -52,9 +60,9 @@ class Promise:
     Parameters
     ----------
     tight : SizeField
-        The field it was generated for.
+        The field it was generated for, lowered where patches of it were made anew.
     raw : QuadMesh
-        As generated.
+        As generated, without such patches.
     mesh : QuadMesh
         As repaired.
     report : GuaranteeReport
@@ -106,36 +114,68 @@ def promised(
     part = SubMonitor(monitor, 0.0, 0.6)
     best = _repaired(domain, reference, tight, raw, replace(options, hopeless=HOPELESS), part)
     better = 0
-    for n, reach in enumerate(REACH):
+    most_tries = len(REACH) + BETTER
+    for n in range(most_tries):
         held = best.report.holds
-        if held and (better == BETTER or not len(_poor(best))):
+        done = better == BETTER or not len(_poor(best.mesh)) if held else n >= len(REACH)
+        if done:
             break
         better += held
-        part = SubMonitor(monitor, 0.6 + 0.4 * n / len(REACH), 0.6 + 0.4 * (n + 1) / len(REACH))
-        try:
-            finer = _with_room(best, reference, reach, SPARED ** (n + 1))
-            mesh = generated(domain, finer, meshing, SubMonitor(part, 0.0, 0.4))
-        except MeshingError:  # the finer field may pass the limit of elements; what there is stays
-            break
-        strict = options if n == len(REACH) - 1 else replace(options, hopeless=HOPELESS)
-        last = _repaired(domain, reference, finer, mesh, strict, SubMonitor(part, 0.4, 1.0))
-        most = max(DEARER * best.mesh.n_quads, best.mesh.n_quads + FEW)
+        reach = REACH[min(n, len(REACH) - 1)]
+        part = SubMonitor(monitor, 0.6 + 0.4 * n / most_tries, 0.6 + 0.4 * (n + 1) / most_tries)
+        finer = _with_room(best, reference, reach, SPARED ** (n + 1))
+        last = _patched(domain, reference, finer, best, reach, meshing, options, SubMonitor(part, 0.0, 0.2))
+        if last is None or (last is best and best.mesh.n_quads <= LARGEST):
+            strict = options if n >= len(REACH) - 1 else replace(options, hopeless=HOPELESS)
+            try:
+                mesh = generated(domain, finer, meshing, SubMonitor(part, 0.2, 0.5))
+            except MeshingError:  # the finer field may pass the limit of elements; what there is stays
+                break
+            last = _repaired(domain, reference, finer, mesh, strict, SubMonitor(part, 0.5, 1.0))
+        dearer = DEARER if len(_poor(best.mesh)) < MANY * best.mesh.n_quads else MUCH_DEARER
+        most = max(dearer * best.mesh.n_quads, best.mesh.n_quads + FEW)
         dear = held and last.mesh.n_quads > most
-        if not dear and _demerit(last) <= _demerit(best):
+        if not dear and _demerit(last.mesh, last.report) <= _demerit(best.mesh, best.report):
             best = last
     monitor.step(1.0)
     return best
 
 
-def _demerit(promise: Promise) -> tuple[int, int, float]:
-    poor = _poor(promise)
-    return len(promise.report.elements), len(poor), -float(shape_quality(promise.mesh)[poor].min(initial=1.0))
+def _patched(
+    domain: Domain,
+    reference: SizeFunction,
+    finer: SizeField,
+    best: Promise,
+    reach: float,
+    meshing: MeshOptions,
+    options: GuaranteeOptions,
+    monitor: Monitor,
+) -> Promise | None:
+    """Return the mesh with patches made anew, the same where none becomes better, or none where they are too large."""
+    mesh, report = best.mesh, best.report
+    elements = _poor(mesh) if report.holds else report.elements
+    if len(elements) > HOPELESS * mesh.n_quads:
+        return None
+    patches = patches_around(mesh, elements, int(np.ceil(2.0 * reach)) + 1)
+    if sum(len(patch.rows) for patch in patches) > PATCHED * mesh.n_quads:
+        return None
+    mended, left = repatched(mesh, report, patches, domain, reference, finer, meshing, options, _better, monitor)
+    return best if mended is mesh else Promise(finer, best.raw, mended, left)
+
+
+def _better(mesh: QuadMesh, report: GuaranteeReport, other: QuadMesh, left: GuaranteeReport) -> bool:
+    return _demerit(other, left) < _demerit(mesh, report)
+
+
+def _demerit(mesh: QuadMesh, report: GuaranteeReport) -> tuple[int, int, float]:
+    poor = _poor(mesh)
+    return len(report.elements), len(poor), -float(shape_quality(mesh)[poor].min(initial=1.0))
 
 
 def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: float) -> SizeField:
     """Return the field that a mesh was made for, lower around the elements that are left of it, or of poor shape."""
     mesh, held = promise.mesh, promise.report.holds
-    quads = mesh.quads[_poor(promise) if held else promise.report.elements]
+    quads = mesh.quads[_poor(mesh) if held else promise.report.elements]
     corner = mesh.points[quads]
     longest = np.sqrt(((np.roll(corner, -1, axis=1) - corner) ** 2).sum(axis=2).max(axis=1))
     least = reference.min_over(mesh.points, quads)
@@ -145,13 +185,12 @@ def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: 
         least = np.minimum(least, promise.tight.at(corner.mean(axis=1)))
         spots = POOR_REACH * np.maximum(least, longest), np.full(len(quads), POOR_SHARE)
     else:  # of an element far too large, the part that its edges should have had
-        spots = reach * longest * np.minimum(1.0, LARGEST / ratio), np.clip(SHARE / ratio, lowest, MOST_SHARE)
+        spots = reach * longest * np.minimum(1.0, LONGEST / ratio), np.clip(SHARE / ratio, lowest, MOST_SHARE)
     return lowered(promise.tight, corner.mean(axis=1), *spots, spared * least)
 
 
-def _poor(promise: Promise) -> NDArray[np.int64]:
+def _poor(mesh: QuadMesh) -> NDArray[np.int64]:
     """Return the elements of poor shape, but those in sharp corners, which the domain or its lines make so."""
-    mesh = promise.mesh
     low = np.flatnonzero(shape_quality(mesh) < POOR)
     quads = mesh.quads[low]
     around = np.bincount(mesh.quads.ravel(), minlength=mesh.n_points)

@@ -48,6 +48,11 @@ def region_arrays(domain: Domain, rim: Outline) -> RegionArrays:
         none = read_only(np.empty((0, 3), dtype=np.int32))
         flags = read_only(np.empty((0, 3), dtype=np.bool_))
         return box, read_only(np.empty((0, 2))), none, none, read_only(np.empty(0, dtype=np.bool_)), flags
+    return enclosed(box, rim)
+
+
+def enclosed(box: NDArray[np.float64], rim: Outline) -> RegionArrays:
+    """Return the same of what an outline encloses, from the triangles of its nodes; ``box`` is its bounding box."""
     hull = triangulated(rim.points, rim.edges, bounding=np.zeros(len(rim.edges), dtype=bool))
     ends = np.sort(hull.triangles[:, [[1, 2], [2, 0], [0, 1]]].astype(np.int64), axis=-1)
     bounds = np.sort(rim.edges[rim.bounding].astype(np.int64), axis=1)
