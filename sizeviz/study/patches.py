@@ -21,6 +21,7 @@ from sizeviz.improvement.lines import line_pairs
 from sizeviz.meshing.checks import edges_of
 from sizeviz.meshing.frontal.refill import refilled
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
+from sizeviz.sizing.part import part_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,7 +84,7 @@ def patches_around(mesh: QuadMesh, elements: NDArray[np.int64], rings: int) -> l
         pinched = _pinched(mesh, np.flatnonzero(inside))
         if not pinched.any():
             break
-        inside |= pinched[quads].any(axis=1)
+        inside = np.asarray(inside | pinched[quads].any(axis=1))
     rows = np.flatnonzero(inside)
     outer = np.zeros(mesh.n_points, dtype=bool)
     outer[quads[~inside]] = True
@@ -140,9 +141,11 @@ def repatched(
             report.ratios[left],
             tuple(reason for reason, mine in zip(report.reasons, left, strict=True) if mine),
         )
+        low, high = before.points.min(axis=0), before.points.max(axis=0)
+        size = part_of(tight, low - (high - low), high + (high - low))
         try:
-            raw = _with_new_core(before, patch, domain, tight, meshing, part)
-            after, new = guaranteed(raw, domain, tight, reference, options, part)
+            raw = _with_new_core(before, patch, domain, size, meshing, part)
+            after, new = guaranteed(raw, domain, size, reference, options, part)
         except MeshingError:  # what there is stays
             continue
         if better(before, old, after, new) and _same_rim(before, patch, after):
@@ -154,8 +157,8 @@ def _grown(mesh: QuadMesh, inside: NDArray[np.bool_], rings: int) -> NDArray[np.
     near = np.zeros(mesh.n_points, dtype=bool)
     for _ in range(rings):
         near[mesh.quads[inside]] = True
-        inside = near[mesh.quads].any(axis=1)
-    return np.asarray(inside)
+        inside = np.asarray(near[mesh.quads].any(axis=1))
+    return inside
 
 
 def _in_sharp_corners(mesh: QuadMesh, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -215,7 +218,7 @@ def _joined_at(whole: QuadMesh, kept: NDArray[np.bool_], other: QuadMesh) -> Qua
     rank[nodes] = np.arange(len(nodes))
     at = {point.tobytes(): rank[v] for v, point in zip(nodes, whole.points[nodes], strict=True)}
     number = np.empty(other.n_points, dtype=np.int64)
-    new = []
+    new: list[int] = []
     for v, point in enumerate(other.points):
         number[v] = at.get(point.tobytes(), -1)
         if number[v] < 0:

@@ -2,8 +2,8 @@
 
 What moves and operations can repair depends on the room that the mesh leaves. Where sizes change very fast, or a domain
 is hardly wider than its elements, too few are left to work with. The tight field is then lowered around the elements
-that are left, which costs few elements more, and meshed again: first just the patch around them, and where that does not
-help, or they are all over the mesh, everything.
+that are left, which costs few elements more, and meshed again: first just the patches around them, and where that
+does not help, or they are all over the mesh, everything.
 """
 
 from __future__ import annotations
@@ -37,10 +37,13 @@ LONGEST = 1.5
 """R above which an element's edge no longer tells how far to reach."""
 POOR, POOR_SHARE, POOR_REACH = 0.6, 0.8, 1.5
 """Shape quality from which down sizes are lowered although R <= 1; by how much, and how far around."""
+FAIR = 0.7
+"""The same where patches can be made anew; a whole mesh is not."""
 SHARP = np.deg2rad(38.0)
 """Angle between two lines below which the element between them is poor whatever its mesh; it has at most its sine."""
 BETTER, DEARER, FEW = 3, 1.15, 100
 """How often this is tried, and what it may cost in elements: times their number, or so many."""
+TRIES = len(REACH) + BETTER
 MANY, MUCH_DEARER = 0.05, 1.25
 """The same where this share of the elements or more is poor."""
 FAR, FAR_SHARE = 0.5, 0.8
@@ -114,31 +117,44 @@ def promised(
     part = SubMonitor(monitor, 0.0, 0.6)
     best = _repaired(domain, reference, tight, raw, replace(options, hopeless=HOPELESS), part)
     better = 0
-    most_tries = len(REACH) + BETTER
-    for n in range(most_tries):
-        held = best.report.holds
-        done = better == BETTER or not len(_poor(best.mesh)) if held else n >= len(REACH)
-        if done:
+    for n in range(TRIES):
+        held, fair = best.report.holds, _fair(best)
+        if (n >= len(REACH) and not held) or better == BETTER or not len(_asking(best)):
             break
-        better += held
-        reach = REACH[min(n, len(REACH) - 1)]
-        part = SubMonitor(monitor, 0.6 + 0.4 * n / most_tries, 0.6 + 0.4 * (n + 1) / most_tries)
-        finer = _with_room(best, reference, reach, SPARED ** (n + 1))
-        last = _patched(domain, reference, finer, best, reach, meshing, options, SubMonitor(part, 0.0, 0.2))
-        if last is None or (last is best and best.mesh.n_quads <= LARGEST):
-            strict = options if n >= len(REACH) - 1 else replace(options, hopeless=HOPELESS)
-            try:
-                mesh = generated(domain, finer, meshing, SubMonitor(part, 0.2, 0.5))
-            except MeshingError:  # the finer field may pass the limit of elements; what there is stays
-                break
-            last = _repaired(domain, reference, finer, mesh, strict, SubMonitor(part, 0.5, 1.0))
-        dearer = DEARER if len(_poor(best.mesh)) < MANY * best.mesh.n_quads else MUCH_DEARER
-        most = max(dearer * best.mesh.n_quads, best.mesh.n_quads + FEW)
-        dear = held and last.mesh.n_quads > most
-        if not dear and _demerit(last.mesh, last.report) <= _demerit(best.mesh, best.report):
-            best = last
+        better = BETTER if fair else better + held
+        part = SubMonitor(monitor, 0.6 + 0.4 * n / TRIES, 0.6 + 0.4 * (n + 1) / TRIES)
+        last = _again(domain, reference, best, n, meshing, options, part)
+        if last is best and held:  # the same again would come to the same
+            break
+        best = last
     monitor.step(1.0)
     return best
+
+
+def _again(
+    domain: Domain,
+    reference: SizeFunction,
+    best: Promise,
+    n: int,
+    meshing: MeshOptions,
+    options: GuaranteeOptions,
+    monitor: Monitor,
+) -> Promise:
+    """Return a mesh made for smaller sizes around what is left, the n-th one; or the best so far if it is no better."""
+    reach = REACH[min(n, len(REACH) - 1)]
+    finer = _with_room(best, reference, reach, SPARED ** (n + 1))
+    last = _patched(domain, reference, finer, best, reach, meshing, options, SubMonitor(monitor, 0.0, 0.2))
+    large = last is not None and best.mesh.n_quads > LARGEST
+    if (last is None or last is best) and not large and not _fair(best):
+        strict = options if n >= len(REACH) - 1 else replace(options, hopeless=HOPELESS)
+        try:
+            mesh = generated(domain, finer, meshing, SubMonitor(monitor, 0.2, 0.5))
+        except MeshingError:  # the finer field may pass the limit of elements; what there is stays
+            return best
+        last = _repaired(domain, reference, finer, mesh, strict, SubMonitor(monitor, 0.5, 1.0))
+    if last is None or (best.report.holds and _dear(last.mesh, best.mesh)):
+        return best
+    return last if _demerit(last.mesh, last.report) <= _demerit(best.mesh, best.report) else best
 
 
 def _patched(
@@ -153,7 +169,7 @@ def _patched(
 ) -> Promise | None:
     """Return the mesh with patches made anew, the same where none becomes better, or none where they are too large."""
     mesh, report = best.mesh, best.report
-    elements = _poor(mesh) if report.holds else report.elements
+    elements = _asking(best)
     if len(elements) > HOPELESS * mesh.n_quads:
         return None
     patches = patches_around(mesh, elements, int(np.ceil(2.0 * reach)) + 1)
@@ -167,15 +183,34 @@ def _better(mesh: QuadMesh, report: GuaranteeReport, other: QuadMesh, left: Guar
     return _demerit(other, left) < _demerit(mesh, report)
 
 
-def _demerit(mesh: QuadMesh, report: GuaranteeReport) -> tuple[int, int, float]:
-    poor = _poor(mesh)
-    return len(report.elements), len(poor), -float(shape_quality(mesh)[poor].min(initial=1.0))
+def _demerit(mesh: QuadMesh, report: GuaranteeReport) -> tuple[int, int, int, float]:
+    poor, fair = _below(POOR, mesh), _below(FAIR, mesh)
+    return len(report.elements), len(poor), len(fair), -float(shape_quality(mesh)[fair].min(initial=1.0))
+
+
+def _dear(mesh: QuadMesh, before: QuadMesh) -> bool:
+    """Say whether a mesh has so many more elements than the one before it that better shapes are not worth it."""
+    share = DEARER if len(_below(POOR, before)) < MANY * before.n_quads else MUCH_DEARER
+    return mesh.n_quads > max(share * before.n_quads, before.n_quads + FEW)
+
+
+def _fair(promise: Promise) -> bool:
+    """Say whether nothing is left but shapes that are not worth another mesh, only patches."""
+    return promise.report.holds and not len(_below(POOR, promise.mesh))
+
+
+def _asking(promise: Promise) -> NDArray[np.int64]:
+    """Return the elements that smaller sizes are to help: those that are left, else poor ones, else only fair ones."""
+    if not promise.report.holds:
+        return promise.report.elements
+    poor = _below(POOR, promise.mesh)
+    return poor if len(poor) else _below(FAIR, promise.mesh)
 
 
 def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: float) -> SizeField:
     """Return the field that a mesh was made for, lower around the elements that are left of it, or of poor shape."""
     mesh, held = promise.mesh, promise.report.holds
-    quads = mesh.quads[_poor(mesh) if held else promise.report.elements]
+    quads = mesh.quads[_asking(promise)]
     corner = mesh.points[quads]
     longest = np.sqrt(((np.roll(corner, -1, axis=1) - corner) ** 2).sum(axis=2).max(axis=1))
     least = reference.min_over(mesh.points, quads)
@@ -189,9 +224,9 @@ def _with_room(promise: Promise, reference: SizeFunction, reach: float, spared: 
     return lowered(promise.tight, corner.mean(axis=1), *spots, spared * least)
 
 
-def _poor(mesh: QuadMesh) -> NDArray[np.int64]:
-    """Return the elements of poor shape, but those in sharp corners, which the domain or its lines make so."""
-    low = np.flatnonzero(shape_quality(mesh) < POOR)
+def _below(quality: float, mesh: QuadMesh) -> NDArray[np.int64]:
+    """Return the elements of lower quality, but those in sharp corners, which the domain or its lines make so."""
+    low = np.flatnonzero(shape_quality(mesh) < quality)
     quads = mesh.quads[low]
     around = np.bincount(mesh.quads.ravel(), minlength=mesh.n_points)
     corner, on = mesh.points[quads], (mesh.curve >= 0)[quads]

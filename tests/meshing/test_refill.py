@@ -52,7 +52,9 @@ def test_the_boundary_stays_edge_by_edge_whatever_the_sizes_inside(size: float) 
 def test_an_inner_line_and_a_hole_are_kept() -> None:
     grid = with_curves(square_grid(12, 12))
     centre = grid.points[grid.quads].mean(axis=1)
-    hollow = QuadMesh(grid.points, grid.quads[(np.abs(centre - [0.25, 0.5]) > 0.17).any(axis=1)], grid.curve, grid.fixed)
+    hollow = QuadMesh(
+        grid.points, grid.quads[(np.abs(centre - [0.25, 0.5]) > 0.17).any(axis=1)], grid.curve, grid.fixed
+    )
     used = np.unique(hollow.quads)
     rank = np.full(hollow.n_points, -1)
     rank[used] = np.arange(len(used))

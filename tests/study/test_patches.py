@@ -156,7 +156,7 @@ def test_a_poor_element_is_made_anew_in_its_patch(monkeypatch: pytest.MonkeyPatc
     row = mesh.quads[at(mesh, (0.5, 0.5))[0]]
     points[row[0]] += 0.45 * (points[row[2]] - points[row[0]])  # nearly a triangle
     dented = mesh.with_points(points)
-    assert 0 < len(module._poor(dented)) < 5
+    assert 0 < len(module._below(module.POOR, dented)) < 5
     held = GuaranteeReport(mesh.n_quads, np.empty(0, dtype=np.int64), np.empty(0), ())
     first = Promise(field, dented, dented, held)
     monkeypatch.setattr(module, "_repaired", lambda *_: first)
@@ -179,5 +179,5 @@ def test_where_many_elements_are_poor_a_mesh_may_cost_more(monkeypatch: pytest.M
     monkeypatch.setattr(module, "_repaired", lambda _d, _r, t, raw, *_: Promise(t, raw, raw, held))
     for poor, wanted in ((bad, dearer), (bad[:1], mesh)):
         monkeypatch.setattr(module, "_patched", lambda *_: None)
-        monkeypatch.setattr(module, "_poor", lambda m, poor=poor: poor if m is mesh else poor[:0])
+        monkeypatch.setattr(module, "_below", lambda _, m, poor=poor: poor if m is mesh else poor[:0])
         assert promised(DOMAIN, field, field, mesh).mesh is wanted

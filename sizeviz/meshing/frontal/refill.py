@@ -79,7 +79,7 @@ def refilled(
 
 
 def _outline(mesh: QuadMesh, lines: NDArray[np.integer]) -> tuple[NDArray[np.int64], Outline]:
-    """Return the nodes that are kept, and the outline that they make: boundary edges run with the mesh on their left."""
+    """Return the nodes that are kept, and the outline they make, whose boundary edges have the mesh on their left."""
     width = mesh.n_points
     edges, count = edges_of(mesh.quads)
     keys = edges[:, 0].astype(np.int64) * width + edges[:, 1]
