@@ -81,6 +81,8 @@ COMMANDS: tuple[Command, ...] = (
     Command("fit", "Fit to pane", "View", "F"),
     Command("zoom-in", "Zoom in", "View", "+ ="),
     Command("zoom-out", "Zoom out", "View", "-"),
+    Command("panel-pipeline", "Pipeline panel", "View", "F8", True, "hide show sidebar options"),
+    Command("panel-results", "Results panel", "View", "F9", True, "hide show sidebar table histogram history"),
     Command("color-ratio", "Colour by R", "View", "1"),
     Command("color-quality", "Colour by quality", "View", "2"),
     Command("color-size", "Colour by element size", "View", "3"),

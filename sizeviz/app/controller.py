@@ -214,9 +214,14 @@ class Controller(QObject):
             self._guarded(lambda: self.set_options(make(current), words, key))
 
     def set_wanted(self, methods: tuple[str, ...]) -> None:
-        """Say which methods the panes need; new ones are run."""
-        if methods != self.wanted:
-            self.wanted = methods
+        """Say which methods the panes need; one that is asked for by name is run, however long that takes."""
+        if methods == self.wanted:
+            return
+        before = self.missing()
+        self.wanted = methods
+        if self.automatic and not before and self.missing():
+            self.apply()
+        else:
             self._after_edit()
 
     def apply(self) -> None:

@@ -124,6 +124,11 @@ class Toast(QFrame):
         if notice.level == "info":
             self._timer.start(TOAST_MS)
 
+    def forget_error(self) -> None:
+        """Take an error away once what it was about has worked."""
+        if self.property("level") == "error":
+            self.hide()
+
     def place(self) -> None:
         """Stay in the lower middle of the parent."""
         parent = self.parentWidget()

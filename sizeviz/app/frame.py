@@ -30,7 +30,7 @@ from sizeviz.app.files import StudyFiles
 from sizeviz.app.inspect.histogram import HistogramPanel
 from sizeviz.app.inspect.judge import StatisticsPanel, WorstPanel
 from sizeviz.app.inspect.look import Inspector
-from sizeviz.app.menus import FILE, menu_button
+from sizeviz.app.menus import FILE, VIEW, menu_button
 from sizeviz.app.palette import CommandPalette, ShortcutOverlay
 from sizeviz.app.panels.controls import Section
 from sizeviz.app.panels.options import JudgePanel, MeshPanel, SizePanel, SmoothPanel
@@ -63,7 +63,7 @@ INSPECTOR = 372
 OF_A_STUDY: tuple[str, ...] = (
     "save", "save-as", "save-picture", "save-comparison", "save-page", "save-film", "save-mesh", "save-prescribed",
     "save-target", "copy-command", "copy-python", "copy-table", "copy-table-csv", "copy-table-latex", "worst-ratio",
-    "worst-quality",
+    "worst-quality", "log",
 )  # fmt: skip
 """Commands that there is nothing for until something is open."""
 
@@ -196,7 +196,8 @@ class Frame(QMainWindow):
         bar.setObjectName("tools")
         bar.setMovable(False)
         bar.addWidget(menu_button("File", "Open, save, export", FILE, self.actions_, self))
-        about_panes = []
+        view = menu_button("View", "Zoom, worst elements, colours, panels", VIEW, self.actions_, self)
+        about_panes = [bar.addWidget(view)]
         for name in ("undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-1", "panes-2",
                      "panes-3", "panes-4"):  # fmt: skip
             if name == "panes-1":
@@ -244,8 +245,8 @@ class Frame(QMainWindow):
     def show_study(self, study: Study) -> None:
         """Bring panels and panes to a study."""
         if self.pages.currentWidget() is self.welcome:
-            turned: dict[Hashable, Callable[[], object]] = {self.pipeline_dock: self.pipeline_dock.show}
-            turned |= {self.inspector_dock: self.inspector_dock.show, self.board: self._leave_welcome}
+            turned: dict[Hashable, Callable[[], object]] = {dock: dock.show for dock in self.wanted_docks}
+            turned[self.board] = self._leave_welcome
             turned |= {surface: surface.show for surface in self.board.curtained()}
             self.turns.take(turned | {"focus": lambda: self.board.active.surface.glass.setFocus()})
         self.show_title()
@@ -254,6 +255,25 @@ class Frame(QMainWindow):
         self.board.refresh()
         self.show_judgement()
         self.show_state()
+
+    @property
+    def wanted_docks(self) -> list[QDockWidget]:
+        """The panels beside the panes that nobody has put away."""
+        docks = (("panel-pipeline", self.pipeline_dock), ("panel-results", self.inspector_dock))
+        return [dock for name, dock in docks if self.actions_[name].isChecked()]
+
+    def show_docks(self) -> None:
+        """Show the wanted panels beside the panes, none beside another page."""
+        for dock in (self.pipeline_dock, self.inspector_dock):
+            dock.setVisible(self.pages.currentWidget() is self.board and dock in self.wanted_docks)
+
+    def turn_page(self, page: QWidget) -> None:
+        """Show another page; panels go before it comes, so that the window need not grow for both."""
+        if page is not self.board:
+            for dock in (self.pipeline_dock, self.inspector_dock):
+                dock.hide()
+        self.pages.setCurrentWidget(page)
+        self.show_docks()
 
     def show_options(self) -> None:
         """Show the study's options, whatever was typed."""

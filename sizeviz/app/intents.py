@@ -59,6 +59,7 @@ def connect_panels(window: Frame) -> None:
     controller.noticed.connect(window.toast.tell)
     controller.refused.connect(window.show_options)
     controller.opened.connect(window.settings.remember_source)
+    controller.opened.connect(lambda spec: window.toast.forget_error())
     board.views_changed.connect(lambda: _on_views(window))
     board.active_changed.connect(lambda pane: window.show_judgement())
     window.statistics.copied.connect(lambda name: controller.noticed.emit(Notice("info", f"Table copied as {name}")))
@@ -101,8 +102,12 @@ def connect_actions(window: Frame, leave_lesson: Callable[[], bool]) -> None:
         ("link", board.linked),
         ("shared-range", board.shared_range),
         ("theme", window.theme.dark),
+        ("panel-pipeline", True),
+        ("panel-results", True),
     ):
         window.actions_[name].setChecked(state)
+    for name in ("panel-pipeline", "panel-results"):
+        on(name, lambda shown: window.show_docks())
     on("link", board.set_linked)
     on("shared-range", board.set_shared_range)
     on("swap", board.swap)
@@ -119,7 +124,7 @@ def connect_actions(window: Frame, leave_lesson: Callable[[], bool]) -> None:
     on("palette", window.palette_.open)
     on("shortcuts", window.overlay.open)
     on("theme", lambda dark: window.set_theme(DARK if dark else LIGHT))
-    on("log", lambda: window.tabs.setCurrentWidget(window.log))
+    on("log", lambda: _show_log(window))
     on("about", lambda: About(window).open())
     _connect_keys(window, leave_lesson)
 
@@ -253,6 +258,11 @@ def _escape(window: Frame, leave_lesson: Callable[[], bool]) -> None:
     else:
         window.toast.hide()
         window.inspector.set_pin("", None)
+
+
+def _show_log(window: Frame) -> None:
+    window.actions_["panel-results"].setChecked(True)
+    window.tabs.setCurrentWidget(window.log)
 
 
 def _keep_keyboard(window: Frame) -> None:

@@ -19,6 +19,12 @@ FILE: tuple[str, ...] = (
 )  # fmt: skip
 """Commands of the menu File, in order; an empty name is a line between."""
 
+VIEW: tuple[str, ...] = (
+    "fit", "zoom-in", "zoom-out", "", "worst-ratio", "worst-quality", "unpin", "", "color-ratio", "color-quality",
+    "color-size", "color-prescribed", "color-target", "", "panel-pipeline", "panel-results", "theme",
+)  # fmt: skip
+"""Commands of the menu View: the toolbar's buttons show the rest."""
+
 LEARN: tuple[str, ...] = (
     "lesson-line", "lesson-process", "why", "explain", "", "presenter", "", "shortcuts", "log", "about",
 )  # fmt: skip

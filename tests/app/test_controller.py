@@ -275,6 +275,18 @@ def test_new_methods_wanted_are_run_and_those_there_are_kept(qtbot, controller, 
     assert engine.calls == ["run none"]
 
 
+def test_a_method_asked_for_by_name_is_run_however_long_that_takes(qtbot, controller, engine, monkeypatch) -> None:
+    open_ring(qtbot, controller)
+    monkeypatch.setattr(controller, "is_cheap", lambda: False)
+    engine.calls.clear()
+    with qtbot.waitSignal(controller.settled, timeout=5000):
+        controller.set_wanted(("gradient-limiting", "guaranteed"))
+    assert engine.calls == ["run guaranteed"]
+    controller.automatic = False
+    controller.set_wanted(("gradient-limiting", "none"))
+    assert controller.missing() == ("none",)
+
+
 def test_old_steps_let_their_meshes_go(qtbot, controller) -> None:
     open_ring(qtbot, controller)
     for k in range(12):

@@ -10,8 +10,9 @@ import pytest
 from app.driver import Person
 from app.fakes import fake_source
 from qtpy.QtCore import QPoint, Qt
-from qtpy.QtWidgets import QApplication
+from qtpy.QtWidgets import QApplication, QScrollArea
 
+from sizeviz.app.inspect.histogram import bins
 from sizeviz.app.news import Notice
 from sizeviz.app.palette import KEYS
 from sizeviz.app.panels.paint import PaintPanel
@@ -105,7 +106,7 @@ def head_fits(view, column: int) -> bool:
     header = view.horizontalHeader()
     words = view.model().headerData(column, Qt.Orientation.Horizontal)
     room = header.fontMetrics().boundingRect(0, 0, 999, 999, 0, words)
-    return header.sectionSize(column) >= room.width() + 12 and header.height() >= room.height()
+    return header.sectionSize(column) >= room.width() + 12 and header.height() >= room.height() + 10
 
 
 def test_what_is_under_a_resting_cursor_is_told_again_when_the_picture_moves(qtbot, opened) -> None:
@@ -193,3 +194,74 @@ def test_a_saved_picture_is_what_the_pane_shows(opened, tmp_path) -> None:
         size = picture.size
     surface = pane.surface
     assert (size[0] - 2 * (size[0] // 40)) / surface.aspect == pytest.approx(size[1], abs=0.25 * size[1])
+
+
+def test_panels_beside_the_panes_can_be_put_away_and_stay_away(opened) -> None:
+    Person(opened).wait_settled()
+    opened.actions_["panel-pipeline"].trigger()
+    opened.actions_["panel-results"].trigger()
+    assert opened.pipeline_dock.isHidden() and opened.inspector_dock.isHidden()
+    opened.actions_["lesson-line"].trigger()
+    opened.lessons.leave()
+    assert opened.pipeline_dock.isHidden() and opened.inspector_dock.isHidden()
+    opened.actions_["explain"].trigger()  # which is shown there
+    assert opened.pipeline_dock.isHidden() and opened.inspector_dock.isVisible()
+    opened.actions_["panel-pipeline"].trigger()
+    assert opened.pipeline_dock.isVisible()
+
+
+def test_the_options_fit_their_panel_with_every_part_open(opened) -> None:
+    Person(opened).wait_settled()
+    for section in opened.sections:
+        section.head.setChecked(True)
+    QApplication.processEvents()
+    scroll = opened.pipeline_dock.findChild(QScrollArea)
+    assert scroll.widget().width() <= scroll.viewport().width()
+
+
+def test_a_verdict_on_older_elements_does_not_shine(qtbot, opened) -> None:
+    opened.controller.automatic = False
+    verdict = opened.board.panes[1].verdict
+    assert verdict.property("role") in ("good", "bad")
+    opened.size_panel.alpha.spin.setValue(3.0)
+    assert verdict.property("role") == "muted"
+    with qtbot.waitSignal(opened.controller.settled, timeout=5000):
+        opened.controller.apply()
+    assert verdict.property("role") in ("good", "bad")
+
+
+def test_what_was_chosen_while_painting_stays(opened) -> None:
+    first, second = opened.board.visible_panes
+    opened.actions_["paint"].trigger()
+    assert [pane.view.color_by for pane in (first, second)] == ["prescribed", "target"]
+    first.set_view(first.view.with_changes(color_by="quality"))
+    second.set_view(second.view.with_changes(method="none"))
+    opened.actions_["paint"].trigger()
+    assert first.view.color_by == "quality"
+    assert (second.view.method, second.view.color_by) == ("none", "ratio")
+
+
+def test_an_error_goes_when_what_it_was_about_has_worked(qtbot, opened) -> None:
+    opened.controller.open_source("nan")
+    qtbot.waitUntil(opened.toast.isVisible, timeout=5000)
+    with qtbot.waitSignal(opened.controller.settled, timeout=5000):
+        opened.controller.open_source("mri")
+    assert not opened.toast.isVisible()
+
+
+def test_a_wrong_range_says_what_is_wrong_with_it(opened) -> None:
+    editor = opened.board.panes[0].open_editor()
+    editor.mode.setCurrentIndex(editor.mode.findData("fixed"))
+    assert editor.remedy.isHidden()
+    editor.low.setValue(9.0)
+    assert editor.remedy.text() == "From must lie below to" and editor.remedy.isVisible()
+    editor.low.setValue(-1.0)
+    assert "above 0" in editor.remedy.text()
+    editor.low.setValue(0.5)
+    assert editor.remedy.isHidden()
+    editor.close()
+
+
+def test_equal_qualities_have_a_range_with_readable_ends() -> None:
+    edges, heights = bins(np.full(9, 1.0) - 1e-9 * np.arange(9), "quality")
+    assert np.ptp(edges) >= 0.02 and heights.sum() == 9

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from qtpy.QtCore import QObject, Signal
 
 from sizeviz.app.inspect.readout import value_at
 from sizeviz.app.panes.surface import Ring
+from sizeviz.scene.view import FIELD_QUANTITIES
 
 if TYPE_CHECKING:
     from sizeviz.app.controller import Controller
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from sizeviz.app.panes.board import PaneBoard
     from sizeviz.app.panes.pane import Pane
     from sizeviz.scene.view import ViewState
+
+AS_IT_COMES: dict[str, Any] = {"cmap": None, "range_mode": "auto", "log": None, "classes": 0}
+"""A view's colours as they are before anybody chooses others."""
 
 
 class PaintTool(QObject):
@@ -39,7 +43,7 @@ class PaintTool(QObject):
         super().__init__(board)
         self._controller, self._board, self._panel = controller, board, panel
         self.active = False
-        self._before: list[ViewState] = []
+        self._before: dict[Pane, ViewState] = {}
         self._corners: list[tuple[float, float]] = []
         for pane in board.panes:
             self._adopt(pane)
@@ -146,15 +150,14 @@ class PaintTool(QObject):
             pane.surface.glass.update()
 
     def _show_fields(self, active: bool) -> None:
-        panes = self._board.visible_panes
         if active:
-            self._before = [pane.view for pane in self._board.panes]
-            for k, pane in enumerate(panes):
+            self._before = {pane: pane.view for pane in self._board.panes}
+            for k, pane in enumerate(self._board.visible_panes):
                 quantity = "prescribed" if k == 0 else "target"
-                changes = {"color_by": quantity, "cmap": None, "range_mode": "auto", "log": None, "classes": 0}
-                pane.set_view(pane.view.with_changes(**changes), tell=False)
+                pane.set_view(pane.view.with_changes(color_by=quantity, **AS_IT_COMES), tell=False)
         else:
-            for pane, view in zip(self._board.panes, self._before, strict=False):
-                pane.set_view(view, tell=False)
+            for pane, view in self._before.items():
+                if pane.view.color_by in FIELD_QUANTITIES:  # whoever chose something else meanwhile wants to see that
+                    pane.set_view(view.with_changes(method=pane.view.method), tell=False)
         self._board.views_changed.emit()
         self._board.refresh()

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 BINS = 60
 
+NARROWEST = 0.02
+"""Least range of quality that is shown: digits beyond that say nothing, and do not fit under the bars."""
+
 
 class HistogramPanel(QWidget):
     """One quantity of one method's elements.
@@ -168,6 +171,7 @@ def bins(values: NDArray[np.float64], quantity: Quantity) -> tuple[NDArray[Any],
     low, high = float(values.min()), float(values.max())
     if quantity != "ratio":
         high = max(high, low + 1e-6)
+        low = min(low, high - NARROWEST)
         heights, edges = np.histogram(values, BINS, (low, high))
         return edges, heights
     low, high = min(low, 0.95), max(high, 1.02)

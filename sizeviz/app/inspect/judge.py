@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 WORST = 100
 """Rows of the list of worst elements."""
 
+HEAD_PADDING = 14
+"""Pixels above and below the words in a table's head, together."""
+
 
 class GridModel(QAbstractTableModel):
     """A read-only table of words."""
@@ -68,10 +71,14 @@ class GridModel(QAbstractTableModel):
         """Return a column's head."""
         if orientation == Qt.Orientation.Horizontal and section < len(self.table.header):
             if role == Qt.ItemDataRole.DisplayRole:
-                return self.table.header[section].replace(" (", "\n(").replace(" ", "\n", 1)
+                return self.head(section)
             if role == Qt.ItemDataRole.TextAlignmentRole and section > 0:
                 return Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         return None
+
+    def head(self, section: int) -> str:
+        """Return a column's head, on as many lines as it has parts."""
+        return self.table.header[section].replace(" (", "\n(").replace(" ", "\n", 1)
 
 
 class StatisticsPanel(QWidget):
@@ -112,6 +119,8 @@ class StatisticsPanel(QWidget):
         header = self.view.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
+        lines = max(self.model.head(column).count("\n") for column in range(self.model.columnCount())) + 1
+        header.setFixedHeight(lines * header.fontMetrics().lineSpacing() + HEAD_PADDING)
 
     def copy(self, name: str) -> None:
         """Put the table on the clipboard."""

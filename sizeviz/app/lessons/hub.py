@@ -45,7 +45,6 @@ class Lessons(QObject):
         super().__init__(window)
         self._window, self._make_canvas = window, make_canvas
         self._page_before: QWidget | None = None
-        self._hidden: list[QWidget] = []
         self.type_scale = 1.0
         self.line = LineController(self)
         self._line_page: LinePage | None = None
@@ -96,10 +95,8 @@ class Lessons(QObject):
             return
         if before is window.welcome and window.controller.study is not None:
             before = window.board
-        window.pages.setCurrentWidget(before)
-        for dock in self._hidden or self._docks() if before is window.board else []:
-            dock.show()
-        self._page_before, self._hidden = None, []
+        window.turn_page(before)
+        self._page_before = None
 
     def set_theme(self, theme: Theme) -> None:
         """Take the window's colours."""
@@ -159,14 +156,8 @@ class Lessons(QObject):
         pages = self._window.pages
         if pages.currentWidget() not in self._pages():
             self._page_before = pages.currentWidget()
-            self._hidden = [dock for dock in self._docks() if not dock.isHidden()]
-            for dock in self._hidden:
-                dock.hide()
-        pages.setCurrentWidget(page)
+        self._window.turn_page(page)
         page.take_focus()
-
-    def _docks(self) -> list[QWidget]:
-        return [self._window.pipeline_dock, self._window.inspector_dock]
 
     def _add_menu(self) -> None:
         window = self._window

@@ -57,7 +57,7 @@ class PaneLessons(QObject):
 
     def explain(self) -> None:
         """Bring the panel to the front."""
-        self._window.inspector_dock.setVisible(self._window.pages.currentWidget() is self._window.board)
+        self._window.actions_["panel-results"].setChecked(True)
         self._window.tabs.setCurrentWidget(self.panel)
         self.refresh()
 
@@ -97,10 +97,9 @@ class PaneLessons(QObject):
         if self._usual_width is None:
             self._usual_width = window.tabs.minimumWidth()
         window.tabs.setMinimumWidth(round(self._usual_width * type_scale))
-        if window.pages.currentWidget() is window.board:
-            window.pipeline_dock.setVisible(not on)
-            if on:
-                self.explain()
+        window.actions_["panel-pipeline"].setChecked(not on)
+        if on and window.pages.currentWidget() is window.board:
+            self.explain()
         self._show_ball(self.why.asked)
         window.board.refresh()
 

@@ -147,7 +147,7 @@ class SmoothPanel(OptionsPanel):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.smoothing = QCheckBox("Smooth and clean up")
-        self.cleanup = QCheckBox("Change the connectivity where that helps")
+        self.cleanup = QCheckBox("Improve the connectivity")
         self.sweeps, self.rounds = QSpinBox(), QSpinBox()
         self.sweeps.setRange(0, 200)
         self.rounds.setRange(0, 20)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QFontMetricsF, QImage, QPen
-from qtpy.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QFrame, QSpinBox, QWidget
+from qtpy.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QFrame, QLabel, QSpinBox, QWidget
 
 from sizeviz.app.qt import painting
 from sizeviz.scene.colormaps import MAPS, RATIO_MAP
@@ -145,6 +145,10 @@ class ColorBarEditor(QFrame):
         self.classes.setRange(0, 64)
         self.classes.setSpecialValueText("continuous")
         self.classes.setValue(view.classes)
+        self.remedy = QLabel()
+        self.remedy.setProperty("role", "bad")
+        self.remedy.setWordWrap(True)
+        self.remedy.hide()
         self._lay_out()
         self._connect()
         self._enable()
@@ -153,11 +157,20 @@ class ColorBarEditor(QFrame):
         form = QFormLayout(self)
         form.setContentsMargins(14, 12, 14, 14)
         form.setSpacing(8)
-        rows = (("Map", self.map), ("Range", self.mode), ("From", self.low), ("to", self.high),
-                ("Cut off", self.percentile), ("", self.log), ("Classes", self.classes))  # fmt: skip
-        for words, control in rows:
+        rows = (
+            ("Map", self.map, "Colours from low to high; _r turns a map round"),
+            ("Range", self.mode, "All values, all but a share at each end, or the two numbers below"),
+            ("From", self.low, "Lower end of a fixed range"),
+            ("to", self.high, "Upper end of a fixed range"),
+            ("Cut off", self.percentile, "Share of the values left out at each end, for percentiles"),
+            ("", self.log, "Equal factors get equal lengths of the bar; R always has it so"),
+            ("Classes", self.classes, "Steps of colour; 0 is continuous"),
+        )
+        for words, control, tip in rows:
             control.setAccessibleName(words or "Logarithmic")
+            control.setToolTip(tip)
             form.addRow(words, control)
+        form.addRow(self.remedy)
 
     def _connect(self) -> None:
         self.map.currentTextChanged.connect(self._tell)
@@ -181,6 +194,9 @@ class ColorBarEditor(QFrame):
         for control in (self.low, self.high):
             control.setProperty("invalid", wrong)
             control.style().polish(control)
+        self.remedy.setText("From must lie below to" if not low < high else "A logarithmic range begins above 0")
+        self.remedy.setVisible(wrong)
+        self.adjustSize()
         if wrong:
             return
         self._view = self._view.with_changes(

@@ -117,8 +117,9 @@ class Pane(QFrame):
         self.detail.setText(spec.detail)
         self.detail.setToolTip(spec.detail)
         self.method.setToolTip(f"{spec.title}: {spec.detail}")
-        self._say(spec)
-        self.badge.setVisible(stale and spec.scale is not None)
+        older = stale and spec.scale is not None
+        self._say(spec, older)
+        self.badge.setVisible(older)
 
     def forget(self) -> None:
         """Keep nothing of what was shown: a pane that nobody sees must not hold the memory of a mesh."""
@@ -231,13 +232,13 @@ class Pane(QFrame):
         self.method.setCurrentIndex(max(self.method.findData(self.view.method), 0))
         self.quantity.setCurrentIndex(max(self.quantity.findData(self.view.color_by), 0))
 
-    def _say(self, spec: SceneSpec) -> None:
+    def _say(self, spec: SceneSpec, older: bool) -> None:
         sign = {True: "✓  ", False: "✗  ", None: ""}[spec.passed]
         self.verdict.setText(sign + spec.verdict)
         worst = WORST_KEYS.get(self.view.color_by) if spec.scale is not None else None
         self.verdict.setToolTip(spec.verdict if worst is None else f"Go to the worst element ({worst})")
         self.verdict.setCursor(Qt.CursorShape.ArrowCursor if worst is None else Qt.CursorShape.PointingHandCursor)
-        role = {True: "good", False: "bad", None: ""}[spec.passed]
+        role = "muted" if older else {True: "good", False: "bad", None: ""}[spec.passed]
         if self.verdict.property("role") != role:
             self.verdict.setProperty("role", role)
             self.verdict.style().polish(self.verdict)
