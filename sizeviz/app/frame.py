@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from sizeviz.app.panes.canvas import Canvas
     from sizeviz.study import Study
 
-SIDEBAR = 306
+SIDEBAR = 314
 """Width of the pipeline's panels, in device-independent pixels."""
 
 INSPECTOR = 372

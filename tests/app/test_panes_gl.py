@@ -255,3 +255,20 @@ def test_a_large_mesh_is_handed_over_in_turns_and_the_latest_scene_wins(window, 
     parts = sum(len(layer.parts) for layer in view._scene._shown.values())
     assert view.renderer.GetActors().GetNumberOfItems() == parts > 8  # of the scenes let go nothing stays
     assert np.abs(person.look_at(pane).astype(int) - first).mean() < 0.5
+
+
+def test_a_large_mesh_is_never_black_while_the_window_is_resized(qtbot, tmp_path) -> None:
+    window = MainWindow(FakeEngine(n=220), Settings(str(tmp_path / "settings.ini")))
+    qtbot.addWidget(window)
+    window.resize(1300, 800)
+    window.show()
+    window.controller.open_source("ring")
+    person = Person(window)
+    person.wait_settled(60)
+    black = []
+    for k in range(10):
+        window.resize(1240 + 20 * (k % 4), 740 + 15 * (k % 5))
+        person.rest(4 + 9 * k % 50)
+        black += [float((person.picture_of(pane).max(axis=2) < 8).mean()) for pane in window.board.visible_panes]
+    window.close()
+    assert max(black) < 0.1

@@ -60,7 +60,8 @@ class PaneView(QtInteractor):
         self._scene = Renderer(self)
         self._wanted = Camera2D(0.5, 0.5, 1.1)
         self._drawn: Camera2D | None = None
-        self._drawn_size = (0, 0)
+        self._drawn_size = self._painted_size = (0, 0)
+        self._has_frame = False
         self._dirty, self._is_resizing = True, False
         self._seconds = 0.0
         self._ground = (1.0, 1.0, 1.0)
@@ -124,7 +125,7 @@ class PaneView(QtInteractor):
         # within a paint only that is drawn which was quick to draw before
         self._drawn, self._drawn_size, self._seconds = self._wanted, self._size(), 0.0
         self.grabFramebuffer()
-        self._drawn, self._seconds, self._dirty = None, 0.0, True
+        self._drawn, self._has_frame, self._seconds, self._dirty = None, False, 0.0, True
 
     def stop(self) -> None:
         """Draw no more."""
@@ -153,10 +154,11 @@ class PaneView(QtInteractor):
                 self._draw_whole()
                 return
             self._begin()
-        if self._drawn is None:
-            self._clear()
-        elif not resized or not self._turn.is_busy or not self._next_piece:
-            self._copy()  # else VTK's buffers have another size already, and what is on the screen stays there
+        if self._has_frame:
+            self._copy()
+        elif self._painted_size != self._size():
+            self._clear()  # else what is on the screen stays there
+        self._painted_size = self._size()
 
     def _prepare_on(self, steps: Iterator[None]) -> None:
         """Hand more of the coming scene to VTK; once all of it is there it takes the present one's place."""
@@ -178,7 +180,8 @@ class PaneView(QtInteractor):
         super().paintGL()
         self._seconds = time.perf_counter() - began
         self._dirty = False
-        self._drawn, self._drawn_size = self._wanted, self._size()
+        self._drawn, self._drawn_size, self._has_frame = self._wanted, self._size(), True
+        self._painted_size = self._drawn_size
         self.frames += 1
 
     def _begin(self) -> None:
@@ -206,11 +209,13 @@ class PaneView(QtInteractor):
             self._turn.take({"draw": self._draw_on})
         else:
             self._drawn, self._drawn_size = self._under_way
+            self._has_frame = True
             self.frames += 1
             self.update()
 
     def _draw_piece(self, number: int) -> None:
         window, renderer = self.ren_win, self.renderer
+        self._has_frame = self._has_frame and self._under_way[1] == self._drawn_size  # VTK resizes its buffers now
         window.MakeCurrent()
         state = window.GetState()
         state.Reset()  # Qt touched OpenGL since VTK last did
