@@ -60,6 +60,9 @@ SIDEBAR = 314
 INSPECTOR = 372
 """Width of the judgement's panels."""
 
+SPACING = 3
+"""Between the toolbar's buttons."""
+
 OF_A_STUDY: tuple[str, ...] = (
     "save", "save-as", "save-picture", "save-comparison", "save-page", "save-film", "save-mesh", "save-prescribed",
     "save-target", "copy-command", "copy-python", "copy-table", "copy-table-csv", "copy-table-latex", "worst-ratio",
@@ -198,7 +201,7 @@ class Frame(QMainWindow):
         bar.addWidget(menu_button("File", "Open, save, export", FILE, self.actions_, self))
         view = menu_button("View", "Zoom, worst elements, colours, panels", VIEW, self.actions_, self)
         about_panes = [bar.addWidget(view)]
-        for name in ("undo", "redo", "", "paint", "", "link", "shared-range", "swap", "fit", "", "panes-1", "panes-2",
+        for name in ("undo", "redo", "", "paint", "", "link", "shared-range", "swap", "", "panes-1", "panes-2",
                      "panes-3", "panes-4"):  # fmt: skip
             if name == "panes-1":
                 about_panes.append(bar.addWidget(_quiet("  Panes")))
@@ -210,10 +213,12 @@ class Frame(QMainWindow):
             """Offer only what the page at hand can do."""
             for action in about_panes:
                 action.setVisible(self.pages.currentWidget() is self.board)
+            if self.isVisible():
+                self.suit_bar()
 
         self.pages.currentChanged.connect(suit_page)
         suit_page()
-        short = {"paint": "Paint", "link": "Link", "shared-range": "Shared range", "swap": "Swap", "fit": "Fit",
+        short = {"paint": "Paint", "link": "Link", "shared-range": "Shared range", "swap": "Swap",
                  "panes-1": "1", "panes-2": "2", "panes-3": "3", "panes-4": "4"}  # fmt: skip
         for name, words in short.items():
             self.actions_[name].setIconText(words)
@@ -222,10 +227,11 @@ class Frame(QMainWindow):
         bar.addWidget(spacer)
         search = QToolButton()
         search.setObjectName("search")
-        search.setText("Search commands          Ctrl+K")
+        search.setText("Search    Ctrl+K")
         search.setAccessibleName("Open the command palette")
+        search.setToolTip("Find any command by typing a few letters (Ctrl+K)")
         search.clicked.connect(lambda: self.actions_["palette"].trigger())
-        bar.addWidget(search)
+        self._search = bar.addWidget(search)
         for name, words in (("theme", "Dark"), ("shortcuts", "?")):
             self.actions_[name].setIconText(words)
             bar.addAction(self.actions_[name])
@@ -245,6 +251,7 @@ class Frame(QMainWindow):
     def show_study(self, study: Study) -> None:
         """Bring panels and panes to a study."""
         if self.pages.currentWidget() is self.welcome:
+            self._let_shrink(self.welcome)  # the panels come before it goes, and the window must not grow for both
             turned: dict[Hashable, Callable[[], object]] = {dock: dock.show for dock in self.wanted_docks}
             turned[self.board] = self._leave_welcome
             turned |= {surface: surface.show for surface in self.board.curtained()}
@@ -290,8 +297,14 @@ class Frame(QMainWindow):
     def _suit_pages(self) -> None:
         """Let the window be as small as the page on show can be, however much room the others would want."""
         for k in range(self.pages.count()):
-            policy = QSizePolicy.Policy.Preferred if k == self.pages.currentIndex() else QSizePolicy.Policy.Ignored
-            self.pages.widget(k).setSizePolicy(policy, policy)
+            self._let_shrink(self.pages.widget(k))
+        current = self.pages.currentWidget()
+        if current is not None:
+            current.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+
+    @staticmethod
+    def _let_shrink(page: QWidget) -> None:
+        page.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
 
     def show_title(self) -> None:
         """Name the study's file, or what it was opened from, and mark unsaved changes."""
@@ -362,9 +375,17 @@ class Frame(QMainWindow):
             event.acceptProposedAction()
             self.controller.open_source(paths[0])
 
+    def suit_bar(self) -> None:
+        """Offer the search where the toolbar has room for it; where it has not, its keys work all the same."""
+        bar, shown = self.toolbar, self._search.isVisible()
+        wish = bar.widgetForAction(self._search).sizeHint().width() + SPACING
+        room = self.width() - bar.sizeHint().width() + (wish if shown else 0)
+        self._search.setVisible(room >= wish)
+
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Keep the message in its place."""
+        """Keep the message in its place, and the toolbar's buttons in sight."""
         super().resizeEvent(event)
+        self.suit_bar()
         if self.toast.isVisible():
             self.toast.place()
 

@@ -26,7 +26,7 @@ VIEW: tuple[str, ...] = (
 """Commands of the menu View: the toolbar's buttons show the rest."""
 
 LEARN: tuple[str, ...] = (
-    "lesson-line", "lesson-process", "why", "explain", "", "presenter", "", "shortcuts", "log", "about",
+    "lesson-line", "lesson-process", "why", "explain", "", "presenter", "", "palette", "shortcuts", "log", "about",
 )  # fmt: skip
 """Commands of the menu Learn."""
 

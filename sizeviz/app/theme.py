@@ -137,14 +137,14 @@ QToolTip { background: @raised; color: @text; border: 1px solid @border; padding
 
 QToolBar { background: @panel; border: none; border-bottom: 1px solid @border; padding: 5px 8px; spacing: 3px; }
 QToolBar::separator { background: @border; width: 1px; margin: 6px 7px; }
-QToolButton { background: transparent; border: 1px solid transparent; border-radius: 6px; padding: 5px 9px; }
+QToolButton { background: transparent; border: 1px solid transparent; border-radius: 6px; padding: 5px 7px; }
 QToolButton:hover { background: @tint; }
 QToolButton:focus { border-color: @accent; }
 QToolButton:checked { background: @tint; color: @accent; border-color: @accent; }
 QToolButton:disabled { color: @border; }
 QToolButton#small { padding: 2px 8px; color: @muted; }
 QToolButton#small:hover { color: @text; }
-QToolButton[popupMode="2"] { padding-right: 20px; }
+QToolButton[popupMode="2"] { padding-right: 19px; }
 QToolButton::menu-indicator { image: url(@icons/down.svg); width: 10px; height: 10px;
   subcontrol-origin: padding; subcontrol-position: center right; right: 6px; }
 QToolButton#search { background: @raised; color: @muted; border: 1px solid @border; padding: 5px 14px;

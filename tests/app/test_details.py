@@ -10,7 +10,7 @@ import pytest
 from app.driver import Person
 from app.fakes import fake_source
 from qtpy.QtCore import QPoint, Qt
-from qtpy.QtWidgets import QApplication, QScrollArea
+from qtpy.QtWidgets import QApplication, QScrollArea, QToolButton
 
 from sizeviz.app.inspect.histogram import bins
 from sizeviz.app.news import Notice
@@ -86,6 +86,31 @@ def test_histograms_name_the_method_whose_elements_they_count(opened) -> None:
         opened.board.set_active(pane)
         Person(opened).wait(lambda: not opened.is_settling)
         assert [histogram.count.text() for histogram in opened.histograms] == [words, words]
+
+
+def test_opening_something_does_not_make_the_window_grow(qtbot, flat_window) -> None:
+    flat_window.resize(1024, 700)
+    sizes = []
+    with qtbot.waitSignal(flat_window.controller.settled, timeout=10_000):
+        flat_window.controller.open_source("ring")
+    for _ in range(20):
+        QApplication.processEvents()
+        sizes.append((flat_window.width(), flat_window.height()))
+    Person(flat_window).wait(lambda: not flat_window.is_settling)
+    assert flat_window.board.isVisible() and set(sizes) == {(1024, 700)}
+    buttons = [button for button in flat_window.toolbar.findChildren(QToolButton) if button.text()]
+    assert [button.objectName() for button in buttons if not button.isVisible()] == ["search"]
+    flat_window.resize(1400, 900)
+    QApplication.processEvents()
+    assert all(button.isVisible() for button in buttons)
+
+
+def test_the_worst_of_a_coarse_mesh_is_shown_with_everything(opened) -> None:
+    pane = opened.board.active
+    opened.board.go_to(pane.view.method, 0, across=200.0)
+    assert pane.surface.camera == pane.surface.fitted and pane.surface.shows_all
+    opened.board.go_to(pane.view.method, 0, across=4.0)
+    assert pane.surface.camera.height < pane.surface.fitted.height
 
 
 def test_the_window_fits_a_small_screen_whatever_it_shows(opened) -> None:

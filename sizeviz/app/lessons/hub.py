@@ -108,7 +108,7 @@ class Lessons(QObject):
         self.type_scale = PRESENTER_SCALE if on else 1.0
         apply_theme(self._window, self._window.theme, self.type_scale)
         self.set_theme(self._window.theme)
-        self._show_search(not on)
+        self._window.suit_bar()
         self.panes.set_presenter(on, self.type_scale)
 
     def escape(self) -> bool:
@@ -130,14 +130,6 @@ class Lessons(QObject):
             apply_theme(self._window, self._window.theme, 1.0)
 
     # -- inside ----------------------------------------------------------------------------------------------------
-
-    def _show_search(self, shown: bool) -> None:
-        """Show the toolbar's search, or leave its room to larger words; its keys work all the same."""
-        bar = self._window.toolbar
-        for action in bar.actions():
-            widget = bar.widgetForAction(action)
-            if widget is not None and widget.objectName() == "search":
-                action.setVisible(shown)
 
     def _on_study(self, old: Study | None, new: Study) -> None:
         """Show what was opened while a lesson was on show."""

@@ -197,6 +197,8 @@ class PaneBoard(QWidget):
     def go_to(self, method: str, element: int, across: float = 24.0) -> Pane | None:
         """Centre the pane that shows a method on one of its elements, about 24 such elements across.
 
+        Of a mesh that is coarser than that, everything is shown.
+
         A list may name an element of a mesh that the pane, whose turn came earlier or is still to come, does not show:
         then nothing moves.
         """
@@ -206,7 +208,8 @@ class PaneBoard(QWidget):
             return None
         x, y = mesh.points[mesh.quads[element]].mean(axis=0)
         size = float(np.sqrt(abs(mesh.areas[element])))
-        pane.surface.move_camera(pane.surface.camera.at(float(x), float(y), across * size))
+        near = pane.surface.camera.at(float(x), float(y), across * size)
+        pane.surface.fit() if near.height >= pane.surface.fitted.height else pane.surface.move_camera(near)
         return pane
 
     def set_tool_active(self, active: bool) -> None:

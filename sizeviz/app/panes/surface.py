@@ -282,8 +282,13 @@ class Surface(QWidget):
 
     def fit(self) -> None:
         """Show everything."""
-        self.move_camera(Camera2D.fitted(self._bounds, self.aspect))
+        self.move_camera(self.fitted)
         self._fitted = True
+
+    @property
+    def fitted(self) -> Camera2D:
+        """The camera that shows everything."""
+        return Camera2D.fitted(self._bounds, self.aspect)
 
     @property
     def shows_all(self) -> bool:
