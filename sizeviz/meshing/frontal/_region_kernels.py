@@ -7,6 +7,9 @@ from numba import njit
 
 from sizeviz.geometry._predicates_kernels import orient2d
 
+CERTAIN = 1.0 + 1e-6
+"""How much larger a square is taken than it is, for what rounding hides."""
+
 
 @njit(nogil=True, cache=True, _nrt=False)
 def within(region, x, y, gap, hint):
@@ -23,6 +26,54 @@ def within(region, x, y, gap, hint):
     if t < 0:
         return False, 0
     return region[4][t] and _clear(region[1], triangles, region[5], t, x, y, gap), t
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def outside(region, x, y, half, hint, around):
+    """Return whether a square lies outside for certain, ``half`` its side, and a hint for the next one nearby.
+
+    Asked are the triangles that it may reach, one after the other; ``around`` has room for so many, and where there
+    are more the answer is no.
+    """
+    points, triangles, neighbours, inside = region[1], region[2], region[3], region[4]
+    if len(triangles) == 0:
+        return False, hint
+    start = _triangle_at(points, triangles, neighbours, x, y, hint)
+    if start < 0:
+        return False, 0
+    if inside[start]:
+        return False, start
+    around[0] = start
+    n, at = 1, 0
+    while at < n:
+        t = around[at]
+        at += 1
+        for i in range(3):
+            if not _reaches(points, triangles, t, i, x, y, half):
+                continue
+            u = neighbours[t, i]
+            if u < 0:
+                continue
+            if inside[u]:
+                return False, start
+            known = False
+            for j in range(n):
+                known = known or around[j] == u
+            if not known:
+                if n == len(around):
+                    return False, start
+                around[n] = u
+                n += 1
+    return True, start
+
+
+@njit(nogil=True, cache=True, _nrt=False)
+def _reaches(points, triangles, t, i, x, y, half):
+    """Whether a square around a point reaches, or nearly, the outer side of edge i of triangle t."""
+    a, b = triangles[t, (i + 1) % 3], triangles[t, (i + 2) % 3]
+    ux, uy = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
+    off = ux * (y - points[a, 1]) - uy * (x - points[a, 0])
+    return off <= CERTAIN * half * (abs(ux) + abs(uy))
 
 
 @njit(nogil=True, cache=True, _nrt=False)

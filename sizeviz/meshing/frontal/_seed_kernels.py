@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from sizeviz.meshing.frontal._packing_kernels import CLEARANCE, N_BUCKETS, bucket_of
-from sizeviz.meshing.frontal._region_kernels import within
+from sizeviz.meshing.frontal._region_kernels import outside, within
 from sizeviz.sizing._kernels import size_at
 
 LEAF = 0.9
@@ -17,12 +17,12 @@ STACK = 256
 
 
 @njit(nogil=True, cache=True, _nrt=False)
-def leaves(most, sampler, region, scale, slope, stack, depth, out, hints):
+def leaves(most, sampler, region, scale, slope, stack, depth, out, hints, around):
     """Split cells from the stack until ``most`` leaves with their centre inside the domain are in ``out``.
 
     A leaf's side is at most ``LEAF`` of the size at its centre, and so small that, at the given slope, no size below
-    about ``1 - HIDDEN`` of that can hide in it. Returns the depth of the stack, the number of leaves in ``out``, and
-    the number of elements that the leaves ask for.
+    about ``1 - HIDDEN`` of that can hide in it. ``around`` is room for ``outside``. Returns the depth of the stack, the
+    number of leaves in ``out``, and the number of elements that the leaves ask for.
     """
     count, asked = 0, 0.0
     box = region[0]
@@ -36,6 +36,10 @@ def leaves(most, sampler, region, scale, slope, stack, depth, out, hints):
         size, hints[0] = size_at(sampler, x, y, hints[0])
         size *= scale
         if side > limit * size:
+            # small sizes beyond the boundary are nobody's concern, but would take more cells than the mesh has elements
+            beyond, hints[1] = outside(region, x, y, half, hints[1], around)
+            if beyond:
+                continue
             for k in range(4):
                 stack[depth, 0] = x + (half - side * (k & 1)) * 0.5
                 stack[depth, 1] = y + (half - side * (k >> 1)) * 0.5

@@ -29,6 +29,9 @@ CHUNK = 20_000
 SMALLEST = 16_000
 """Seeds from which the domain is packed in parts, side by side."""
 
+AROUND = 24
+"""Triangles of the outline that are asked, before a square of the quadtree is split, whether it is outside."""
+
 SAMPLED = 16
 """Every so manieth seed says where the cuts between parts lie."""
 
@@ -130,10 +133,12 @@ def seeded(region: RegionArrays, size: SizeField, options: MeshOptions, monitor:
     stack = np.empty((seeding.STACK, 3))
     stack[0] = (*(0.5 * (box[:2] + box[2:]) + shift), side)
     depth, asked, slope = 1, 0.0, steepest(size)
-    hints, rows = np.zeros(2, dtype=np.int64), []
+    hints, around, rows = np.zeros(2, dtype=np.int64), np.empty(AROUND, dtype=np.int64), []
     while depth:
         out = np.empty((CHUNK, 3))
-        depth, count, more = seeding.leaves(CHUNK, size.sampler, region, options.scale, slope, stack, depth, out, hints)
+        depth, count, more = seeding.leaves(
+            CHUNK, size.sampler, region, options.scale, slope, stack, depth, out, hints, around
+        )
         rows.append(out[:count])
         asked += more
         if asked > options.max_elements:

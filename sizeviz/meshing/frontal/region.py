@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from sizeviz.geometry import Domain
     from sizeviz.meshing.frontal.boundary import Outline
 
+BEYOND = 1.5
+"""How much wider than the box the four nodes around it lie."""
+
 RegionArrays = tuple[
     NDArray[np.float64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.bool_], NDArray[np.bool_]
 ]
@@ -52,11 +55,18 @@ def region_arrays(domain: Domain, rim: Outline) -> RegionArrays:
 
 
 def enclosed(box: NDArray[np.float64], rim: Outline) -> RegionArrays:
-    """Return the same of what an outline encloses, from the triangles of its nodes; ``box`` is its bounding box."""
-    hull = triangulated(rim.points, rim.edges, bounding=np.zeros(len(rim.edges), dtype=bool))
+    """Return the same of what an outline encloses, from the triangles of its nodes; ``box`` is its bounding box.
+
+    Four nodes around the box make triangles of what is outside too, so that squares there are known to be.
+    """
+    around = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    corners = 0.5 * (box[:2] + box[2:]) + BEYOND * 0.5 * (box[2:] - box[:2]) * around
+    hull = triangulated(
+        np.vstack([rim.points, corners]), rim.edges, bounding=np.zeros(len(rim.edges), dtype=bool)
+    )  # fmt: skip
     ends = np.sort(hull.triangles[:, [[1, 2], [2, 0], [0, 1]]].astype(np.int64), axis=-1)
     bounds = np.sort(rim.edges[rim.bounding].astype(np.int64), axis=1)
-    width = len(rim.points)
+    width = len(hull.points)
     bounding = np.isin(ends[..., 0] * width + ends[..., 1], bounds[:, 0] * width + bounds[:, 1])
     inside = kernels.parity(hull.neighbours, bounding & hull.locked)
     for kite in rim.kites:
