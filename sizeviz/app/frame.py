@@ -156,6 +156,7 @@ class Frame(QMainWindow):
         scroll.setWidgetResizable(True)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setMinimumWidth(SIDEBAR)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # its controls take the keyboard, and it follows them
         sidebar = QWidget()
         whole = QVBoxLayout(sidebar)
         whole.setContentsMargins(0, 0, 0, 0)
@@ -180,6 +181,7 @@ class Frame(QMainWindow):
         self.tabs = QTabWidget()
         self.tabs.setDocumentMode(True)
         self.tabs.tabBar().setDrawBase(False)
+        self.tabs.tabBar().setAccessibleName("Pages of results")
         for page, words in ((judge, "Judgement"), (self.history, "History"), (self.log, "Log")):
             self.tabs.addTab(page, words)
         self.tabs.setMinimumWidth(INSPECTOR)

@@ -55,6 +55,30 @@ def test_apply_and_cancel_hand_the_keyboard_to_the_picture(qtbot, opened, engine
     assert QApplication.focusWidget() is opened.board.active.surface.glass
 
 
+def test_the_list_of_the_worst_is_passed_by_tab_without_going_anywhere(qtbot, opened) -> None:
+    Person(opened).wait_settled()
+    camera, view = opened.board.active.surface.camera, opened.worst.view
+    view.setFocus(Qt.FocusReason.TabFocusReason)
+    assert opened.board.active.surface.camera == camera and opened.inspector.pin is None
+    qtbot.keyClick(view, Qt.Key.Key_Return)
+    assert opened.inspector.pin == ("gradient-limiting", int(opened.worst.elements[0]))
+    qtbot.keyClick(view, Qt.Key.Key_Down)
+    assert opened.inspector.pin == ("gradient-limiting", int(opened.worst.elements[1]))
+
+
+def test_every_stop_of_the_keyboard_has_a_name(qtbot, opened) -> None:
+    Person(opened).wait_settled()
+    for section in opened.sections:
+        section.head.setChecked(True)
+    nameless = set()
+    for _ in range(80):
+        widget = QApplication.focusWidget()
+        if not (widget.accessibleName() or getattr(widget, "text", lambda: "")()):
+            nameless.add(type(widget).__name__)
+        qtbot.keyClick(widget, Qt.Key.Key_Tab)
+    assert nameless <= {"QLineEdit"}  # the inner line of a number, which has the number's name
+
+
 def test_everything_of_the_file_and_the_learn_group_is_in_a_menu() -> None:
     shown = {*FILE, *LEARN}
     assert {command.name for command in COMMANDS if command.group in ("File", "Learn")} <= shown

@@ -162,6 +162,8 @@ def test_each_iteration_is_told_in_words_with_its_numbers(tmp_path):
     assert "9 times" in first and "had not yet seen" in second and "converged in 3 iterations" in last
     assert ("", "elements", "324") in process_rows(ProcessShown(evolution, 3))
     assert "Algorithm 3" in process_words(ProcessShown()) and not process_rows(ProcessShown())
+    idle = replace(evolution, iterations=evolution.iterations[:1], limit=10.0)
+    assert idle.converged and "coarser first mesh" in process_words(ProcessShown(idle, 0))
 
 
 # -- the page ----------------------------------------------------------------------------------------------------------

@@ -144,8 +144,9 @@ class WorstPanel(QWidget):
         self.model = GridModel(self)
         self.view = _table_view(self.model, "Worst elements")
         self.view.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.view.selectionModel().currentRowChanged.connect(self._choose)
-        self.view.clicked.connect(lambda index: self._choose(index, index))
+        self.view.selectionModel().currentRowChanged.connect(self._move)
+        for chosen in (self.view.clicked, self.view.activated):
+            chosen.connect(lambda index: self._choose(index))
         head = QHBoxLayout()
         head.addWidget(self.title, 1)
         head.addWidget(self.order)
@@ -202,7 +203,12 @@ class WorstPanel(QWidget):
             self.model.set_table(table)
         self.view.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
 
-    def _choose(self, index: QModelIndex, before: QModelIndex) -> None:
+    def _move(self, index: QModelIndex, before: QModelIndex) -> None:
+        """Follow the arrow keys; the row that Qt marks when the keyboard merely passes by is nobody's choice."""
+        if before.isValid() or index.row() > 0:
+            self._choose(index)
+
+    def _choose(self, index: QModelIndex) -> None:
         if 0 <= index.row() < len(self._elements):
             self.chosen.emit(self._method, int(self._elements[index.row()]))
 

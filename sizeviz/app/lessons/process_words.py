@@ -43,6 +43,8 @@ def verdict_words(shown: ProcessShown) -> str:
     assert evolution is not None
     count, last = shown.count - 1, evolution.iterations[-1].analytic_ratio
     method = METHOD_TITLES.get(str(evolution.options.get("method")), "The process")
+    if evolution.converged and count == 0:
+        return f"No R is above {evolution.limit:g}: there was nothing to do. <b>Begin with a coarser first mesh.</b>"
     if evolution.converged:
         return f"{method} <b>converged in {count} iteration{'s' * (count != 1)}</b>: no R above {evolution.limit:g}."
     state = "so far" if shown.running else "when it stopped"
