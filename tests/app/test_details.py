@@ -63,7 +63,7 @@ def test_the_table_keeps_the_last_numbers_and_calls_them_stale(qtbot, opened) ->
     assert after.header == ("", "Gradient limiting", "Size preserving (stale)")
     assert after.rows[:-1] == before.rows[:-1]  # all but the seconds, which are of a run that is gone
     assert opened.statistics.model.headerData(2, Qt.Orientation.Horizontal) == "Size\npreserving\n(stale)"
-    assert all(head_fits(opened.statistics.view, column) for column in (1, 2))
+    qtbot.waitUntil(lambda: all(head_fits(opened.statistics.view, column) for column in (1, 2)), timeout=2000)
     with qtbot.waitSignal(opened.controller.settled, timeout=5000):
         opened.controller.apply()
     assert "stale" not in "".join(opened.statistics.model.table.header)
