@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from qtpy.QtWidgets import QWidget
+
     from sizeviz.app.panes.pane import Pane
     from sizeviz.app.window import MainWindow
 
@@ -142,6 +144,18 @@ class Person:
         self.rest(250)
         self.wait(lambda: not self.window.is_settling)
         assert self.window.grab().save(str(path))
+
+
+def glass(window: MainWindow, pane: int = 0) -> QWidget:
+    """Return what takes the mouse in a pane."""
+    return window.board.panes[pane].surface.glass
+
+
+def at(window: MainWindow, x: float, y: float, pane: int = 0) -> QPoint:
+    """Return the pixel of a pane over a model point."""
+    widget = glass(window, pane)
+    px, py = window.board.panes[pane].surface.camera.to_pixel(x, y, widget.width(), widget.height())
+    return QPoint(round(px), round(py))
 
 
 def pixels(image: QImage) -> np.ndarray:
