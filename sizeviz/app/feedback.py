@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 TOAST_MS = 6000
 """How long a message that is no error stays."""
 
+FOOT = 124
+"""Pixels that a message keeps from the lower side: colour bars and verdicts stay in sight."""
+
 LOG_LINES = 2000
 
 
@@ -136,7 +139,7 @@ class Toast(QFrame):
         self.setFixedWidth(max(width, 200))
         self.layout().activate()  # the words' height follows from the width that the buttons leave them
         self.resize(self.width(), self.layout().totalHeightForWidth(self.width()))
-        self.move((parent.width() - self.width()) // 2, parent.height() - self.height() - 84)
+        self.move((parent.width() - self.width()) // 2, parent.height() - self.height() - FOOT)
 
     def _copy(self) -> None:
         QApplication.clipboard().setText(self._details)

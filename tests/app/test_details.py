@@ -49,6 +49,13 @@ def test_a_message_is_as_high_as_its_words(opened) -> None:
         assert opened.toast.height() <= max(text.heightForWidth(text.width()), opened.toast.copy_button.height()) + 28
 
 
+def test_a_message_covers_neither_colour_bar_nor_verdict(opened) -> None:
+    Person(opened).wait_settled()
+    opened.toast.tell(Notice("info", "Saved"))
+    lowest = opened.toast.mapToGlobal(QPoint(0, opened.toast.height())).y()
+    assert all(lowest <= pane.bar.mapToGlobal(QPoint(0, 0)).y() for pane in opened.board.visible_panes)
+
+
 def test_after_the_first_page_the_keys_go_to_the_picture(opened) -> None:
     Person(opened).wait_settled()
     assert QApplication.focusWidget() is opened.board.active.surface.glass
