@@ -133,6 +133,16 @@ def test_the_table_shows_all_its_rows(opened) -> None:
     assert view.verticalScrollBar().maximum() == 0 and view.horizontalScrollBar().maximum() == 0
 
 
+def test_no_head_of_the_table_is_cut_with_three_methods(qtbot, opened) -> None:
+    opened.actions_["panes-3"].trigger()
+    pane = opened.board.panes[2]
+    with qtbot.waitSignal(opened.controller.settled, timeout=5000):
+        pane.set_view(pane.view.with_changes(method="guaranteed"))
+    Person(opened).wait(lambda: not opened.is_settling)
+    assert opened.statistics.model.columnCount() == 4
+    assert all(head_fits(opened.statistics.view, column) for column in (1, 2, 3))
+
+
 def head_fits(view, column: int) -> bool:
     """Return whether a column's head is shown whole."""
     header = view.horizontalHeader()

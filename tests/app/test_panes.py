@@ -46,6 +46,32 @@ def test_one_to_four_panes(opened, count: int) -> None:
     assert all(pane.spec.scale is not None for pane in opened.board.visible_panes)
 
 
+def test_a_linked_pane_that_shows_everything_does_so_at_any_size(opened) -> None:
+    opened.actions_["panes-3"].trigger()
+    opened.board.set_active(opened.board.panes[2])
+    opened.actions_["fit"].trigger()
+    opened.actions_["panes-1"].trigger()
+    Person(opened).rest(50)
+    surface = opened.board.active.surface
+    assert surface.shows_all and surface.camera == surface.fitted
+    surface.move_camera(surface.camera.zoomed(2.0, 0.5, 0.5))
+    assert not surface.shows_all
+
+
+def test_panes_that_come_look_where_the_others_do(opened) -> None:
+    opened.board.go_to("gradient-limiting", 300, 6.0)
+    camera = opened.board.active.surface.camera
+    opened.actions_["panes-4"].trigger()
+    Person(opened).rest(50)
+    assert all(pane.surface.camera == camera for pane in opened.board.visible_panes)
+    opened.actions_["panes-2"].trigger()
+    opened.actions_["fit"].trigger()
+    opened.actions_["panes-3"].trigger()
+    Person(opened).rest(50)
+    surfaces = [pane.surface for pane in opened.board.visible_panes]
+    assert all(surface.shows_all and surface.camera == surfaces[0].camera for surface in surfaces)
+
+
 def test_hidden_panes_and_earlier_sources_keep_no_mesh(qtbot, opened) -> None:
     opened.actions_["panes-4"].trigger()
     Person(opened).wait_settled(10)

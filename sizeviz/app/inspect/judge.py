@@ -119,8 +119,11 @@ class StatisticsPanel(QWidget):
         header = self.view.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
-        lines = max(self.model.head(column).count("\n") for column in range(self.model.columnCount())) + 1
-        header.setFixedHeight(lines * header.fontMetrics().lineSpacing() + HEAD_PADDING)
+        heads = [self.model.head(column).splitlines() for column in range(self.model.columnCount())]
+        metrics = header.fontMetrics()
+        widest = max((metrics.horizontalAdvance(line) for lines in heads for line in lines), default=0)
+        header.setMinimumSectionSize(widest + HEAD_PADDING)  # many methods are scrolled to; no head is cut
+        header.setFixedHeight(max(len(lines) for lines in heads) * metrics.lineSpacing() + HEAD_PADDING)
 
     def copy(self, name: str) -> None:
         """Put the table on the clipboard."""

@@ -127,7 +127,11 @@ class PaneBoard(QWidget):
         """Show so many panes, 1 to 4."""
         while len(self.panes) < count:
             self._make_pane()
+        leader, new = self.panes[min(self._active, count - 1)], self.panes[self._count : count]
         self._count = count
+        for pane in new:
+            if self.linked and pane is not leader:
+                pane.surface.look_like(leader.surface)
         columns = 2 if count == 4 else count
         for k, pane in enumerate(self.panes):
             self._grid.removeWidget(pane)
@@ -273,11 +277,12 @@ class PaneBoard(QWidget):
         self.refresh()
 
     def _follow(self, leader: Pane, camera: Camera2D) -> None:
-        if not self.linked:
+        if not self.linked or leader not in self.visible_panes:
             return
         for pane in self.visible_panes:
-            if pane is not leader and pane.surface.camera != camera:
-                pane.surface.set_camera(camera)
+            alike = pane.surface.camera == camera and pane.surface.shows_all == leader.surface.shows_all
+            if pane is not leader and not alike:
+                pane.surface.set_camera(camera, leader.surface.shows_all)
                 pane.update_edges()
 
     def _shared_scale(self, pane: Pane, shown: list[tuple[Pane, Displayed]]) -> ColorScale | None:

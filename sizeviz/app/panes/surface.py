@@ -280,10 +280,15 @@ class Surface(QWidget):
             self._bounds = bounds
             self.fit()
 
+    def look_like(self, other: Surface) -> None:
+        """Look where another surface does, without telling."""
+        self._bounds = other._bounds
+        self.set_camera(other.camera, other.shows_all)
+
     def fit(self) -> None:
-        """Show everything."""
-        self.move_camera(self.fitted)
-        self._fitted = True
+        """Show everything, and go on doing so at any size until somebody looks elsewhere."""
+        self.set_camera(self.fitted, shows_all=True)
+        self.camera_changed.emit(self.camera)
 
     @property
     def fitted(self) -> Camera2D:
@@ -305,9 +310,9 @@ class Surface(QWidget):
         self.set_camera(camera)
         self.camera_changed.emit(camera)
 
-    def set_camera(self, camera: Camera2D) -> None:
-        """Look elsewhere without telling, as when another pane leads."""
-        self._fitted = False
+    def set_camera(self, camera: Camera2D, shows_all: bool = False) -> None:
+        """Look elsewhere without telling, as when another pane leads; say whether that is everything."""
+        self._fitted = shows_all
         self.camera = camera
         self.canvas.look(camera)
         self.glass.hover_again()
