@@ -172,6 +172,7 @@ def copy_recipe(window: Frame, language: str) -> None:
     from sizeviz.study.recipe import as_command, as_python, has_name
 
     study, methods, saved = window.controller.study, window.board.methods, window.files.source_path
+    measure = window.board.active.view.measure
     if study is None:
         return
     saved = None if saved is None else saved.resolve()
@@ -180,10 +181,10 @@ def copy_recipe(window: Frame, language: str) -> None:
         if language == "Python":
             words = as_python(study, methods, study_file=saved)
         elif saved is None or has_name(study.source):
-            words = as_command(study, methods)
+            words = as_command(study, methods, measure=measure)
         else:
             field_file = write_field(saved.with_suffix(".npz"), study.source.field)
-            words = as_command(study, methods, field_file=field_file)
+            words = as_command(study, methods, field_file=field_file, measure=measure)
             exported = f"; its sizes are in {field_file.name}"
     except SizevizError as error:
         window.controller.noticed.emit(Notice("error", str(error)))

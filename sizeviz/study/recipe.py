@@ -18,6 +18,7 @@ from sizeviz.study.pipeline import COMPARED, GUARANTEED
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from sizeviz.conformity import Measure
     from sizeviz.geometry import Domain
     from sizeviz.sources import Source
     from sizeviz.study.options import StudyOptions
@@ -25,7 +26,12 @@ if TYPE_CHECKING:
 
 
 def as_command(
-    study: Study, methods: Sequence[str] = COMPARED, *, out: str = "results", field_file: str | Path | None = None
+    study: Study,
+    methods: Sequence[str] = COMPARED,
+    *,
+    out: str = "results",
+    field_file: str | Path | None = None,
+    measure: Measure = "mean-edge",
 ) -> str:
     """Return the command that makes a study's meshes: ``compare`` where that does, else a ``run`` for each method.
 
@@ -39,6 +45,8 @@ def as_command(
         Folder for the results.
     field_file : path-like, optional
         Where the field of a source that has no name, such as a painted one, was exported to (``.npz`` or ``.npy``).
+    measure : Measure
+        Size of an element in the command's picture and ratio array; the meshes do not depend on it.
 
     Returns
     -------
@@ -52,6 +60,8 @@ def as_command(
     """
     source = _typed_source(study.source, field_file)
     options = _typed_options(study.options)
+    if measure != "mean-edge":
+        options += ["--measure", measure]
     plain = [method for method in methods if method != GUARANTEED]
     if not study.options.smoothing and GUARANTEED in methods:
         raise InputError("the command line guarantees smoothed meshes only; smooth, or copy as Python")

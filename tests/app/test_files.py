@@ -235,3 +235,8 @@ def test_a_painted_study_is_copied_as_what_refers_to_its_files(qtbot, opened, tm
     words = QApplication.clipboard().text()
     assert words.startswith("sizeviz compare ") and str(tmp_path / "painted.npz") in words
     assert np.array_equal(read_field(tmp_path / "painted.npz").sizes, opened.controller.study.source.field.sizes)
+    assert "--measure" not in words
+    opened.judge_panel.measure.setCurrentIndex(opened.judge_panel.measure.findData("max-edge"))
+    opened.judge_panel.measure.activated.emit(opened.judge_panel.measure.currentIndex())
+    opened.actions_["copy-command"].trigger()
+    assert QApplication.clipboard().text().count("--measure max-edge") == 1

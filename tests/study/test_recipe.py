@@ -153,3 +153,9 @@ def test_what_the_command_line_cannot_say_is_refused(formula, changes, methods) 
     with pytest.raises(InputError, match="copy as Python"):
         as_command(other, methods)
     assert "StudyOptions(" in as_python(other, methods)
+
+
+def test_the_measure_of_the_picture_is_typed_only_where_it_is_not_the_usual_one(formula: Study) -> None:
+    assert "--measure" not in as_command(formula)
+    both = as_command(formula, METHODS, measure="max-edge").splitlines()
+    assert all(line.count("--measure max-edge") == 1 for line in both)
