@@ -69,11 +69,14 @@ class Job:
         Takes a monitor and returns the result; runs on the worker.
     then : callable
         Takes the result; runs in the window, only if the job was completed.
+    is_patient : bool
+        Whether it stands back behind the window's drawing; what follows the hand and is short does not.
     """
 
     title: str
     work: Callable[[Monitor], Any]
     then: Callable[[Any], None]
+    is_patient: bool = True
     monitor: JobMonitor = field(default_factory=JobMonitor)
     began: float = 0.0
 
@@ -99,7 +102,8 @@ class _Runnable(QRunnable):
 
     def run(self) -> None:
         """Do the work; whatever happens, say so once."""
-        _give_way()
+        if self._job.is_patient:
+            _give_way()
         outcome, payload = _outcome(self._job)
         try:
             self._bridge.ended.emit(self._job, outcome, payload)
@@ -135,6 +139,8 @@ def _outcome(job: Job) -> tuple[str, Any]:
 class JobRunner(QObject):
     """Runs one job at a time; a new one takes the place of whatever runs or waits.
 
+    There are two threads, for a thread that once stood back may not step forward again; never do both work at a time.
+
     Signals
     -------
     started(Job)
@@ -156,9 +162,10 @@ class JobRunner(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
-        self._pool.setExpiryTimeout(-1)
+        self._pools = {is_patient: QThreadPool(self) for is_patient in (True, False)}
+        for pool in self._pools.values():
+            pool.setMaxThreadCount(1)
+            pool.setExpiryTimeout(-1)
         self._bridge = _Bridge()
         self._bridge.ended.connect(self._on_ended, Qt.ConnectionType.QueuedConnection)
         self._running: Job | None = None
@@ -176,6 +183,11 @@ class JobRunner(QObject):
     def is_busy(self) -> bool:
         """Whether a job runs or waits."""
         return self._running is not None
+
+    @property
+    def n_at_work(self) -> int:
+        """How many threads are at work at this moment, also on what nobody waits for any more."""
+        return sum(pool.activeThreadCount() for pool in self._pools.values())
 
     def submit(self, job: Job) -> None:
         """Run a job as soon as the worker is free; one that runs is cancelled, one that waits is dropped."""
@@ -200,14 +212,15 @@ class JobRunner(QObject):
         """Stop for good and wait for the worker; return whether it ended in time."""
         self.cancel()
         self._timer.stop()
-        return bool(self._pool.waitForDone(patience_ms))
+        ended = [pool.waitForDone(patience_ms) for pool in self._pools.values()]
+        return all(ended)
 
     def _start(self, job: Job) -> None:
         self._running = job
         job.began = time.perf_counter()
         self.started.emit(job)
         self._timer.start()
-        self._pool.start(_Runnable(job, self._bridge))
+        self._pools[job.is_patient].start(_Runnable(job, self._bridge))
 
     def _on_ended(self, job: Job, outcome: str, payload: Any) -> None:
         self._timer.stop()

@@ -59,9 +59,28 @@ def test_the_worker_stands_back_behind_the_window_wherever_that_stands(qtbot, ru
     def work(monitor):
         return os.getpriority(os.PRIO_PROCESS, threading.get_native_id())
 
+    for is_patient in (True, False, True):  # one after another, whoever stood back before
+        with qtbot.waitSignal(runner.idle, timeout=3000):
+            runner.submit(Job("a", work, found.append, is_patient))
+    window = os.getpriority(os.PRIO_PROCESS, os.getpid())
+    patient = min(window + WORKER_NICENESS, 19)
+    assert found == [patient, window, patient]
+
+
+def test_jobs_of_both_kinds_never_work_at_the_same_time(qtbot, runner) -> None:
+    at_work, most = [0], [0]
+
+    def work(monitor):
+        at_work[0] += 1
+        most[0] = max(most[0], at_work[0])
+        time.sleep(0.03)
+        at_work[0] -= 1
+
     with qtbot.waitSignal(runner.idle, timeout=3000):
-        runner.submit(Job("a", work, found.append))
-    assert found == [min(os.getpriority(os.PRIO_PROCESS, os.getpid()) + WORKER_NICENESS, 19)]
+        for is_patient in (True, False, True, False):
+            runner.submit(Job("a", work, lambda r: None, is_patient))
+            qtbot.wait(10)
+    assert most == [1] and runner.n_at_work == 0
 
 
 @pytest.mark.parametrize("error", [ValueError("no\nmore"), RuntimeError(""), KeyboardInterrupt(), MemoryError()])

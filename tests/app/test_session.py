@@ -50,6 +50,8 @@ def gl_window(qtbot, tmp_path):
     window.show()
     window.activateWindow()
     qtbot.waitUntil(window.isActiveWindow, timeout=5000)
+    window.preparation.start()  # as the application does, while the person reads the first page
+    qtbot.waitUntil(lambda: window.preparation.is_done, timeout=60_000)
     yield window
     window.close()
 
@@ -151,7 +153,7 @@ def test_a_session(gl_window, tmp_path) -> None:
     beat.stop()
     window.close()
     print(measured)
-    assert not window.isVisible() and controller.jobs._pool.activeThreadCount() == 0
+    assert not window.isVisible() and controller.jobs.n_at_work == 0
 
 
 def _drop(window, path) -> None:

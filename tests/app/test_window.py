@@ -103,7 +103,7 @@ def test_closing_during_a_run_ends_it_and_frees_the_canvases(qtbot, engine, tmp_
     window.controller.open_source("ring")
     qtbot.waitUntil(lambda: any("run" in call for call in engine.calls), timeout=5000)
     window.close()
-    assert window.controller.jobs._pool.activeThreadCount() == 0
+    assert window.controller.jobs.n_at_work == 0
     assert all(pane.surface.canvas.disposed for pane in window.board.panes)
 
 

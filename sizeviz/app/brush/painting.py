@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -162,7 +163,8 @@ class Painting(QObject):
                     QTimer.singleShot(0, self._request_preview)
             self.changed.emit()
 
-        self._jobs.submit(Job(PREVIEW, lambda monitor: self._engine.targets(field, options, since, monitor), show))
+        work = partial(self._engine.targets, field, options, since)
+        self._jobs.submit(Job(PREVIEW, work, show, is_patient=False))
 
     def _since(self, study: Study) -> Processed | None:
         """Return the newest fields that the next preview can start from: the last preview's, or the study's own."""

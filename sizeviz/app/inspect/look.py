@@ -94,6 +94,8 @@ class Inspector(QObject):
 
     def _look_again(self, pane: Pane) -> None:
         """Tell of what a pane shows now, whether or not the mouse moves."""
+        if self._controller.painting.stroke is not None:
+            return  # what a stroke changes is told as it changes
         if self._under is not None and self._under[0] is pane:
             self._hover(*self._under)
         self._draw_pin()
@@ -120,14 +122,15 @@ class Inspector(QObject):
     def _draw_pin(self) -> None:
         for pane in self._board.panes:
             glass, mesh = pane.surface.glass, pane.subject.mesh
-            glass.marks.pop("pin", None)
+            before = glass.marks.pop("pin", None)
             if self.pin is not None and mesh is not None and self.pin[0] == pane.view.method:
                 element = self.pin[1]
                 if element < mesh.n_quads:
                     corners = mesh.points[mesh.quads[element]]
                     x, y = corners.mean(axis=0)
                     glass.marks["pin"] = Mark(corners, _pin_words(self.read(pane, float(x), float(y)), element), True)
-            glass.update()
+            if before is not None or "pin" in glass.marks:
+                glass.update()
 
     def _after_change(self) -> None:
         """Let go of a pin whose mesh is gone."""

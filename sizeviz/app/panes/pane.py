@@ -237,7 +237,9 @@ class Pane(QFrame):
         self.verdict.setText(sign + spec.verdict)
         worst = WORST_KEYS.get(self.view.color_by) if spec.scale is not None else None
         self.verdict.setToolTip(spec.verdict if worst is None else f"Go to the worst element ({worst})")
-        self.verdict.setCursor(Qt.CursorShape.ArrowCursor if worst is None else Qt.CursorShape.PointingHandCursor)
+        cursor = Qt.CursorShape.ArrowCursor if worst is None else Qt.CursorShape.PointingHandCursor
+        if self.verdict.cursor().shape() != cursor:
+            self.verdict.setCursor(cursor)
         role = "muted" if older else {True: "good", False: "bad", None: ""}[spec.passed]
         if self.verdict.property("role") != role:
             self.verdict.setProperty("role", role)
