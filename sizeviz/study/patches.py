@@ -97,6 +97,29 @@ def patches_around(mesh: QuadMesh, elements: NDArray[np.int64], rings: int) -> l
     return found
 
 
+def sharp_corners(mesh: QuadMesh, quads: NDArray[np.int32], below: float) -> NDArray[np.bool_]:
+    """Say which corners of some elements of a mesh fill a sharp corner between curves.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+        The mesh.
+    quads : (K, 4) int32
+        Corners of the elements.
+    below : float
+        Angle in radians below which a corner is sharp.
+
+    Returns
+    -------
+    (K, 4) bool
+    """
+    corner, on = mesh.points[quads], (mesh.curve >= 0)[quads]
+    ahead, behind = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
+    across = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
+    sharp = np.arctan2(across, (ahead * behind).sum(axis=2)) < below
+    return np.asarray(sharp & mesh.fixed[quads] & np.roll(on, -1, axis=1) & np.roll(on, 1, axis=1))
+
+
 def repatched(
     mesh: QuadMesh,
     report: GuaranteeReport,
@@ -164,14 +187,8 @@ def _grown(mesh: QuadMesh, inside: NDArray[np.bool_], rings: int) -> NDArray[np.
 def _in_sharp_corners(mesh: QuadMesh, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Say which elements of some fill a sharp corner between curves."""
     rows = np.flatnonzero(among)
-    quads = mesh.quads[rows]
-    corner, on = mesh.points[quads], (mesh.curve >= 0)[quads]
-    ahead, behind = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
-    across = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
-    sharp = np.arctan2(across, (ahead * behind).sum(axis=2)) < SHARP
-    sharp &= mesh.fixed[quads] & np.roll(on, -1, axis=1) & np.roll(on, 1, axis=1)
     found = np.zeros(mesh.n_quads, dtype=bool)
-    found[rows[sharp.any(axis=1)]] = True
+    found[rows[sharp_corners(mesh, mesh.quads[rows], SHARP).any(axis=1)]] = True
     return found
 
 

@@ -19,7 +19,7 @@ from sizeviz.improvement import GuaranteeOptions, GuaranteeReport, guaranteed
 from sizeviz.meshing import MeshOptions, generated
 from sizeviz.monitor import SILENT, Monitor, SubMonitor
 from sizeviz.sizing.lowered import lowered
-from sizeviz.study.patches import patches_around, repatched
+from sizeviz.study.patches import patches_around, repatched, sharp_corners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -229,11 +229,7 @@ def _below(quality: float, mesh: QuadMesh) -> NDArray[np.int64]:
     low = np.flatnonzero(shape_quality(mesh) < quality)
     quads = mesh.quads[low]
     around = np.bincount(mesh.quads.ravel(), minlength=mesh.n_points)
-    corner, on = mesh.points[quads], (mesh.curve >= 0)[quads]
-    ahead, behind = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
-    across = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
-    sharp = np.arctan2(across, (ahead * behind).sum(axis=2)) < SHARP
-    sharp &= mesh.fixed[quads] & np.roll(on, -1, axis=1) & np.roll(on, 1, axis=1)
+    sharp = sharp_corners(mesh, quads, SHARP)
     cornered = (sharp | ((around == 1) & mesh.fixed)[quads]).any(axis=1)
     return low[~cornered]
 
