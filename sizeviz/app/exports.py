@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sizeviz.app.films import FilmDialog, Turn, ask_film_place, film_process, film_study
 from sizeviz.app.jobs import Job
 from sizeviz.app.news import Notice
-from sizeviz.app.places import ask_place
+from sizeviz.app.places import ask_place, kinds
 from sizeviz.errors import InputError
 from sizeviz.scene.subject import METHOD_TITLES
 
@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from sizeviz.app.frame import Frame
     from sizeviz.monitor import Monitor
     from sizeviz.sizing import SizeField
-
-MESH_KINDS = "*.vtu *.vtk *.msh *.inp *.obj *.mesh *.ply"
-FIELD_KINDS = "*.vtu *.vtk *.npz *.npy *.msh *.pos *.sol"
 
 
 def save_page(window: Frame, path: str | None = None) -> None:
@@ -45,7 +42,7 @@ def save_page(window: Frame, path: str | None = None) -> None:
 
 def save_mesh(window: Frame, path: str | None = None) -> None:
     """Save the active pane's mesh with R, quality and sizes, as the command line would; asks for the place."""
-    from sizeviz.files import write_mesh
+    from sizeviz.files.registry import MESH_WRITERS, write_mesh
     from sizeviz.study.report import mesh_arrays
 
     study, view = window.controller.study, window.board.active.view
@@ -58,7 +55,7 @@ def save_mesh(window: Frame, path: str | None = None) -> None:
         window.controller.noticed.emit(Notice("error", older))
         return
     name = f"{study.source.name}-{view.method}.vtu"
-    path = path or ask_place(window, "Save the mesh", name, f"Meshes ({MESH_KINDS})")
+    path = path or ask_place(window, "Save the mesh", name, kinds("Meshes", MESH_WRITERS))
     if path:
         _write(window, path, lambda place: write_mesh(place, *arrays))
 
@@ -84,9 +81,9 @@ def save_target(window: Frame, path: str | None = None) -> None:
 
 
 def _save_field(window: Frame, field: SizeField, title: str, stem: str, path: str | None) -> None:
-    from sizeviz.files import write_field
+    from sizeviz.files.registry import FIELD_WRITERS, write_field
 
-    path = path or ask_place(window, title, f"{stem}.vtu", f"Size fields ({FIELD_KINDS})")
+    path = path or ask_place(window, title, f"{stem}.vtu", kinds("Size fields", FIELD_WRITERS))
     if path:
         _write(window, path, lambda place: write_field(place, field))
 

@@ -13,7 +13,7 @@ from sizeviz.app.feedback import About
 from sizeviz.app.news import Notice
 from sizeviz.app.panes.board import Selection
 from sizeviz.app.panes.remembered import restore_view
-from sizeviz.app.places import ask_place
+from sizeviz.app.places import ask_place, kinds
 from sizeviz.app.qt import QShortcut
 from sizeviz.app.theme import DARK, LIGHT
 
@@ -131,11 +131,12 @@ def connect_actions(window: Frame, leave_lesson: Callable[[], bool]) -> None:
 
 def open_file(window: Frame) -> None:
     """Ask for a file and open it."""
+    from sizeviz.files.registry import FIELD_READERS, IMAGE_READERS
+
+    read = kinds("Studies, size fields and images", (".sizeviz", *sorted({*FIELD_READERS, *IMAGE_READERS})))
     path, _ = QFileDialog.getOpenFileName(
-        window, "Open a study, a size field or an image", "",
-        "Studies, size fields and images (*.sizeviz *.png *.jpg *.jpeg *.tif *.tiff *.npy *.npz *.vtu *.vtk *.vti "
-        "*.vtp *.msh *.pos *.mesh *.sol *.nii *.gz *.dcm);;All files (*)",
-    )  # fmt: skip
+        window, "Open a study, a size field or an image", "", f"{read};;All files (*)"
+    )
     if path:
         window.controller.open_source(path)
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from qtpy.QtWidgets import QFileDialog
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from qtpy.QtWidgets import QWidget
 
 
@@ -32,3 +34,8 @@ def ask_place(parent: QWidget, title: str, name: str, kinds: str) -> str:
 def with_suffix(path: str, suffix: str) -> str:
     """Return a path with a suffix where it has none; nothing stays nothing."""
     return path if not path or Path(path).suffix else f"{path}{suffix}"
+
+
+def kinds(words: str, suffixes: Iterable[str]) -> str:
+    """Return a dialog's filter for files of some suffixes."""
+    return f"{words} ({' '.join(f'*{suffix}' for suffix in suffixes)})"

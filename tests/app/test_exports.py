@@ -15,8 +15,9 @@ from qtpy.QtWidgets import QFileDialog
 
 from sizeviz.app import exports, films
 from sizeviz.app.films import FilmDialog, Turn
-from sizeviz.app.places import ask_place
+from sizeviz.app.places import ask_place, kinds
 from sizeviz.files import read_field
+from sizeviz.files.registry import FIELD_READERS, FIELD_WRITERS, IMAGE_READERS, MESH_WRITERS
 from sizeviz.progress_lines import LineMonitor, parsed_line
 
 pytestmark = pytest.mark.display
@@ -86,6 +87,19 @@ def test_a_place_without_suffix_gets_the_one_that_was_offered(monkeypatch) -> No
     assert ask_place(None, "Save", "ring.vtu", "Meshes (*.vtu)") == "/there/mesh.vtu"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *given: ("", ""))
     assert ask_place(None, "Save", "ring.vtu", "Meshes (*.vtu)") == ""
+
+
+def test_opening_offers_every_format_that_is_read(opened, monkeypatch) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *given: (asked.append(given[3]) or "", ""))
+    opened.actions_["open"].trigger()
+    assert asked[0].startswith("Studies, size fields and images (*.sizeviz *.dcm ")
+    assert all(f"*{suffix}" in asked[0] for suffix in (*FIELD_READERS, *IMAGE_READERS))
+
+
+def test_the_dialogs_offer_every_format_that_is_written() -> None:
+    assert kinds("Meshes", MESH_WRITERS).startswith("Meshes (*.avs ") and "*.vtu" in kinds("Meshes", MESH_WRITERS)
+    assert all(f"*{suffix}" in kinds("Size fields", FIELD_WRITERS) for suffix in FIELD_WRITERS)
 
 
 @pytest.mark.gl
