@@ -65,19 +65,20 @@ def run_chunks(
     workers = min(threads or default_threads(), len(ranges))
     todo = iter(range(len(ranges)))
 
-    def work() -> None:
+    def work(step: Callable[[int], object]) -> None:
         # one iterator for all threads: its next() is a single step of the interpreter
-        for k in todo:
-            kernel(*ranges[k])
+        try:
+            for k in todo:
+                kernel(*ranges[k])
+                step(k)
+        finally:
+            for _ in todo:  # after an error, whoever's it is, nobody begins another range
+                pass
 
-    helpers = [_pool().submit(work) for _ in range(workers - 1)]
+    helpers = [_pool().submit(work, lambda k: None) for _ in range(workers - 1)]
     try:
-        for k in todo:
-            kernel(*ranges[k])
-            monitor.step(k / len(ranges), message)
+        work(lambda k: monitor.step(k / len(ranges), message))
     finally:
-        for _ in todo:  # after an error nobody begins another range
-            pass
         # a helper that a busy pool has not begun is not needed any more; the others may still use the arrays
         begun = [helper for helper in helpers if not helper.cancel()]
         wait(begun)

@@ -40,6 +40,22 @@ def test_an_error_in_any_range_comes_out_and_stops_the_rest(bad: int) -> None:
     assert bad > 0 or len(begun) < 16
 
 
+def test_an_error_in_a_helper_stops_the_calling_thread_too() -> None:
+    caller, met, begun = threading.get_ident(), threading.Event(), []
+
+    def kernel(start: int, stop: int) -> None:
+        begun.append(start)
+        if threading.get_ident() != caller:
+            met.set()
+            raise ValueError("in a helper")
+        assert met.wait(10)
+        time.sleep(0.01)
+
+    with pytest.raises(ValueError, match="in a helper"):
+        run_chunks(kernel, 64, chunk=1, threads=2)
+    assert len(begun) < 8
+
+
 def test_cancel_waits_for_what_is_under_way() -> None:
     busy = threading.Semaphore(0)
 
